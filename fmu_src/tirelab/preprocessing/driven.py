@@ -53,6 +53,15 @@ class Driven:
         powers = [(i, order - i) for order in (1, 2, 3) for i in range(order + 1)]
         return np.column_stack([*(place**i * speed**j for i, j in powers), self.acceleration])
 
+    def late(self, memory: int) -> FloatArray:
+        """Rate and acceleration (n, k) within a memory of a noise before and after each sample: which of two readings
+        is the later one, and by how much, is not known, and a mass is none of what its own instant shows.
+        """
+        shifts = sorted({sign * shift for shift in (memory // 2, memory) for sign in (-1, 1)} - {0})
+        at = np.arange(self.rate.size)
+        each = (np.clip(at + shift, 0, at.size - 1) for shift in shifts)
+        return np.column_stack([signal[own] for own in each for signal in (self.rate, self.acceleration)])
+
     @property
     def kinks(self) -> FloatArray:
         """Forces (n, k) that rise beyond one deflection each, as that of a stop, at FEWEST_LAGS deflections, and one

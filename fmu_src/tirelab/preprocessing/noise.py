@@ -314,7 +314,7 @@ def _noises_at_whole_variation(
         if (not visits or (could and not fitted)) and rises[min(last, len(rises) - 1)]:
             continue
         # Apart, since of all of them together a recording of a few hundred memories could not tell.
-        shapes = [driven.signals, driven.shapes(found.memory, coarser=fitted)]
+        shapes = [driven.signals, driven.late(found.memory), driven.shapes(found.memory, coarser=fitted)]
         if not (could and any(_follows(residual, own, found.memory) for own in shapes)):
             yield Noise(least, found.memory)
 

@@ -85,3 +85,28 @@ def test_a_short_recording_is_judged_by_as_many_shapes_as_it_has_memories_for() 
     motion = ride(5, 1500)
     spring = (motion.deflection - motion.deflection.mean()) / np.std(motion.deflection)
     assert noise_left(filtered(5, 0.2, 1500) + spring, motion) is None
+
+
+def shaken(seed: int) -> Driven:
+    """A mass and a damper under a force as quick as filtered noise, such as that of a motor whose current is random."""
+    acceleration = filtered(seed, 0.4)
+    rate = lfilter([INTERVAL], [1.0, 3.0 * INTERVAL - 1.0], acceleration)
+    surface = np.zeros(COUNT, dtype=np.intp)
+    return Driven(INTERVAL, INTERVAL * np.cumsum(rate), rate, acceleration, surface)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("later", [3, 4])
+def test_a_mass_whose_force_is_read_late_is_no_noise(later: int, seed: int) -> None:
+    """At its own instant the acceleration shows nothing of such a force, which has the memory of a noise."""
+    motion = shaken(seed)
+    force = np.roll(motion.acceleration, later)
+    assert abs(np.corrcoef(force, motion.acceleration)[0, 1]) < 0.4
+    assert noise_left(force, motion) is None
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_noise_as_quick_as_the_motion_of_a_mass_is_seen(seed: int) -> None:
+    found = noise_left(filtered(seed + 90, 0.4), shaken(seed))
+    assert found is not None
+    assert found.level == pytest.approx(1.0, rel=0.15)
