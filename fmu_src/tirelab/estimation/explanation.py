@@ -23,7 +23,7 @@ from ..preprocessing.samples import Recorded, is_timed
 from ..regressors.dataset import Samples, dataset_of, samples_of
 from ..regressors.excitation import Excitation, excitation_of, misread
 from ..regressors.experiment import driven_by
-from ..regressors.signature import LAW, candidates, constant, gap_of, single_valued
+from ..regressors.signature import LAW, candidates, single_valued
 from ..selection.search import discrepancy_of
 from ..simulation.simulate import simulate
 from .findings import (
@@ -40,6 +40,7 @@ from .findings import (
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .held_out import held_out_of
+from .hidden import LIKE_READING, like_law_of_part
 from .indistinct import alike_in, confounded, followed_by_law, leaving_the_same
 from .ranking import MOST_WORK, Ranking, corrected, ranked, with_parts
 
@@ -49,15 +50,6 @@ Progress = Callable[[str], None]
 
 FIRST_PART = 0.5
 """Budget: part of that of an explanation in which the set is found whose distortion by the blocks is subtracted."""
-
-LIKE_READING = "the noise of the deflection makes as large a response: move faster, or use a finer gauge"
-"""Why an effect cannot be shown of which other readings of the motion give another response."""
-
-LIKE_PRELOAD = "it is one force in this motion, as the preload of a refitted law"
-"""The same of a part, whose law has a preload."""
-
-LIKE_GAP = "it is the same as another gap of the part, a constant of the refitted law"
-"""The same of a part, whose law begins beyond a gap."""
 
 NEAR = 4.0
 """Log posterior odds of a set over the one that stands best for all, or over a part of it, up to which that is
@@ -261,10 +253,7 @@ def _explained(asked: _Asked) -> Explanation:
     dataset, raw, quiet = with_signatures(dataset, recordings, shown, catalogue)
     hidden |= dict.fromkeys(misread(raw, dataset.read_anew(recordings)), LIKE_READING)
     excitation = replace(excitation, single_valued=excitation.single_valued | single_valued(raw, dataset))
-    if baseline.two_sided and LAW in catalogue:
-        hidden |= dict.fromkeys(constant(raw, dataset), LIKE_PRELOAD)
-    if (gap := gap_of(baseline)) and LAW in catalogue:
-        hidden |= {gap[0].name: LIKE_GAP}
+    hidden |= like_law_of_part(raw, dataset) if LAW in catalogue else {}
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     samples = samples_of(recordings, baseline)

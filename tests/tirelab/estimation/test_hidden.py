@@ -1,0 +1,54 @@
+"""What the refitted law of a part is as well cannot be shown beside it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from radialtire import CATALOGUE, PowerLaw, TireModel
+from radialtire.part_curve import PartCurve
+from tirelab.diagnosis.diagnose import diagnose
+from tirelab.estimation.hidden import LIKE_CURVE, LIKE_GAP, LIKE_PRELOAD, like_law_of_part
+from tirelab.recordings.recording import Recording
+from tirelab.regressors.dataset import dataset_of
+from tirelab.regressors.signature import signatures_of
+
+SPRING = TireModel(PowerLaw(200.0, 1.0), tested_range=None, two_sided=True, inflated=False)
+CURVE = replace(
+    SPRING, law=PowerLaw(1e-12, 1.0), curve=PartCurve((0.0, 0.01, 0.02, 0.03), (0.0, 300.0, 350.0, 900.0))
+)
+GAP = replace(SPRING, two_sided=False, effects=((CATALOGUE["deflection_offset"], (1e-3,)),))
+ACTING = ("series_compliance", "deflection_offset", "force_offset", "viscous_damping")
+
+
+def pressed(seed: int, force: float = 20.0) -> Recording:
+    """Two slow cycles of 30 mm, with a force beside noise."""
+    time = np.linspace(0.0, 40.0, 801)
+    x = 0.015 * (1.0 - np.cos(2.0 * np.pi * time / 20.0))
+    noise = np.random.default_rng(seed).normal(size=(2, time.size))
+    forces = np.interp(x, CURVE.curve.at, CURVE.curve.force) if CURVE.curve else x
+    return Recording("p", time, x + 1e-6 * noise[0], np.full(time.size, np.inf), forces + force + noise[1])
+
+
+@pytest.mark.parametrize(
+    ("tire", "told"),
+    [
+        (TireModel(), {}),
+        # Of a straight spring another zero of the gauge is one force, too.
+        (SPRING, {"force_offset": LIKE_PRELOAD, "deflection_offset": LIKE_PRELOAD}),
+        (CURVE, {"force_offset": LIKE_PRELOAD, "series_compliance": LIKE_CURVE}),
+        (GAP, {"deflection_offset": LIKE_GAP}),
+    ],
+    ids=["tire", "spring", "curve", "gap"],
+)
+def test_what_a_refitted_law_is_as_well(tire: TireModel, told: dict[str, str]) -> None:
+    dataset = dataset_of([pressed(1)], tire)
+    assert like_law_of_part(signatures_of(ACTING, dataset), dataset) == told
+
+
+def test_no_spring_in_series_is_an_alternative_beside_a_curve() -> None:
+    """It would not change the force, so that no recording could show it."""
+    verdict = diagnose([pressed(2, force=0.0)], CURVE)
+    told = {a.names: a for a in verdict.alternatives if "series_compliance" in a.names}
+    assert all(np.isnan(a.probability) and LIKE_CURVE in a.reason for a in told.values()), told
