@@ -44,7 +44,7 @@ def respond(signal: float, instant: Instant, state: State, values: State) -> tup
 
 
 def _end(name: str, symbol: str, start: float, meaning: str) -> Parameter:
-    return Parameter(name, symbol, "m", start, -10.0, 10.0, meaning, optional=True, role="reading")
+    return Parameter(name, symbol, "m", start, -1e3, 1e3, meaning, optional=True, role="reading")
 
 
 def _force(number: int) -> Parameter:

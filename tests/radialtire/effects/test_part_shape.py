@@ -42,6 +42,13 @@ def test_forces_on_a_line_make_a_line() -> None:
     np.testing.assert_allclose(added(line, x), 30.0 * 7.0 * x / 0.02, atol=1e-9)
 
 
+def test_its_ends_lie_wherever_a_part_may_be_deflected() -> None:
+    furthest = part(0.0, 1.0).deflection_highest
+    line = part(-furthest, furthest, 30.0 * np.arange(10.0))
+    x = np.array([-0.9, 0.0, 0.9]) * furthest
+    np.testing.assert_allclose(added(line, x), 30.0 * 7.0 * x / (2.0 * furthest), rtol=1e-9, atol=1e-9)
+
+
 def test_with_no_deflection_there_is_the_preload_alone() -> None:
     assert drive(part(-0.01, 0.01), [0.0], [0.0])[0] == pytest.approx(30.0, abs=1e-12)
 
