@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
+from .vocabulary import is_measured
 
 if TYPE_CHECKING:
     import pint
@@ -89,9 +90,15 @@ _GAUGE = re.compile(
 _SO_MANY = re.compile(
     r"x?\s*(?P<value>\d+(?:\.\d+)?)(?:\s*/\s*(?P<by>[1-9]\d*))?\s*\*?\s*(?P<unit>[^\W\d].*)", re.ASCII
 )
+_TIMES = re.compile(
+    r"(?P<unit>[^\W\d].*?)\s*[\[(]?\s*[x*\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*(?P<value>\d+(?:\.\d+)?)\s*[\])]?(?P<by>)",
+    re.ASCII,
+)
+_FACTOR = re.compile(r"[\[(]?\s*(?:[x*/\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*\d|10(?:\^|\*\*|e)).*")
+"""What stands behind a unit that is not that of the numbers: x10, *1000, (x10), /10, 10^3."""
 _PART_OF_ONE = re.compile(r"(?P<value>)(?P<unit>[^\W\d]\w*)\s*/\s*(?P<by>[1-9]\d*)", re.ASCII)
 MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
-_IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\].*")
+_IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\](?P<more>.*)")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
 _WITHIN_A_NAME = re.compile(r"(?P<name>[^()]*)\((?P<unit>[^()]*)\)(?P<more>[^()]+)")
 _LIKELY = {
@@ -280,13 +287,27 @@ def split_header(text: str) -> tuple[str, str | None]:
     for pattern in (_IN_BRACKETS, _IN_PARENTHESES):
         found = pattern.fullmatch(plain)
         if found and found["name"]:
-            unit = found["unit"].strip()
-            return found["name"].strip(), unit if unit.strip("-") else None
+            more = found["more"] if pattern is _IN_BRACKETS else ""
+            return _with_what_follows(found["name"].strip(), found["unit"].strip(), more.strip())
     within = _WITHIN_A_NAME.fullmatch(plain)
     # Other words in parentheses within a name belong to it: Force (left) filtered.
     if within and within["name"] and within["unit"] in _USUAL:
-        return f"{within['name'].strip(' _')} {within['more'].strip(' _')}".strip(), within["unit"]
+        name, more = within["name"].strip(" _"), within["more"].strip(" _")
+        if _FACTOR.fullmatch(more):
+            return _with_what_follows(name, within["unit"], more)
+        return f"{name} {more}".strip(), within["unit"]
     return plain, None
+
+
+def _with_what_follows(name: str, unit: str, more: str) -> tuple[str, str | None]:
+    """Return a name and a unit with what stands behind the brackets: a factor belongs to the unit, `[N] x10`; a word
+    for what is no reading, `[N] max`, and a quotient, `[N]/Area [mm2]`, to the name. Any other text says nothing.
+    """
+    if _FACTOR.fullmatch(more):
+        return name, f"{unit} {more}"
+    if more.startswith("/") or not is_measured(more):
+        name = f"{name} {more}"
+    return name, unit if unit.strip("-") else None
 
 
 def parse_radius(text: str | float) -> float:
@@ -347,7 +368,7 @@ def _likely(unit: str, si: str, known: bool = False) -> str:
         return smaller  # DaN
     if any(map(str.isdigit, unit)):
         # Behind a force it may be what the load cell bears: Load (500 N).
-        many = _so_many(unit) if si != "N" or unit.startswith("x") else ""
+        many = _so_many(unit) if si != "N" or unit.startswith("x") or not unit[0].isdigit() else ""
         return many if many and measures(many.split(" ", 1)[1], si) else ""
     names = {name.lower(): name for name in _COMMON[si]}
     near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
@@ -356,7 +377,7 @@ def _likely(unit: str, si: str, known: bool = False) -> str:
 
 def _so_many(unit: str) -> str:
     """Return a unit that stands for so many of another one as a calibration, `10 ms`, of `1/100 mm` and `ms/10` too."""
-    found = _SO_MANY.fullmatch(unit) or _PART_OF_ONE.fullmatch(unit)
+    found = _SO_MANY.fullmatch(unit) or _PART_OF_ONE.fullmatch(unit) or _TIMES.fullmatch(unit)
     if found is None:
         return ""
     value = float(found["value"] or 1.0) / float(found["by"] or 1.0)
