@@ -52,7 +52,8 @@ def sudden_doubts(
     """Return for each sudden event the channel, the sample and a sentence; arrays (n,) [m], [N]."""
     jumps = (("deflection", at, said) for at, said in jump_doubt(deflection))
     breaks = (("force", at, said) for at, said in break_doubt(deflection, force))
-    marks = (("force", at, said) for at, said in mark_doubt(deflection, force))
+    marks = [("force", at, said) for at, said in mark_doubt(deflection, force)]
+    marks = marks or [("force", at, said) for at, said in false_force_doubt(deflection, force)]
     return (*jumps, *breaks, *marks)
 
 
@@ -76,6 +77,28 @@ def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> t
         "that is a mark for no reading, write nothing there, and the rows are skipped"
     )
     return ((int(alone[0]), said),)
+
+
+def false_force_doubt(
+    deflection: NDArray[np.float64], force: NDArray[np.float64]
+) -> tuple[tuple[int, str], ...]:
+    """Return the first sample at which the force goes far and comes back while the deflection goes on, and a sentence;
+    none without one. Arrays (n,) [m], [N].
+
+    So does a cell that was overloaded, and a line that was cut within its number: 6 for 614.35.
+    """
+    with np.errstate(all="ignore"):
+        alone = np.setdiff1d(_alone(force), _alone(deflection))
+    if not alone.size:
+        return ()
+    at = int(alone[0])
+    good = np.setdiff1d(np.arange(max(at - AROUND, 0), min(at + AROUND + 1, force.size)), alone)
+    more = f" (and so at {alone.size - 1} more)" if alone.size > 1 else ""
+    said = (
+        f"the force is {plain(force[at], 6)} N and {plain(force[good[np.argmin(np.abs(good - at))]], 6)} N at the next "
+        f"sample, farther than any others are apart{more}: if it was read falsely, or its line was cut, delete the row"
+    )
+    return ((at, said),)
 
 
 def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:

@@ -10,6 +10,7 @@ from house_form import write_rows
 from tirelab.recordings.choices import Choices
 from tirelab.recordings.jumps import (
     break_doubt,
+    false_force_doubt,
     false_readings,
     jump_doubt,
     lost_readings,
@@ -342,3 +343,41 @@ def test_marks_that_the_deflection_has_too_are_a_motion() -> None:
     taps = CYCLES.copy()
     taps[[300, 711, 1200]] = 0.5
     assert mark_doubt(taps, marked(300, 711, 1200, mark=-999.0)) == ()
+
+
+def spoiled(values: dict[int, float]) -> np.ndarray:
+    force = 100.0 * CYCLES + 0.01 * np.sin(np.arange(CYCLES.size))
+    force[list(values)] = list(values.values())
+    return force
+
+
+@pytest.mark.parametrize("value", [-9999.0, 32767.0, 6.0, 0.0])
+def test_a_force_that_goes_far_and_comes_back_is_doubted_at_its_row(value: float) -> None:
+    ((at, said),) = false_force_doubt(CYCLES, spoiled({CYCLES.size // 4: 300.0 + value}))
+    assert at == CYCLES.size // 4
+    assert f"the force is {300.0 + value:.6g} N and " in said
+    assert "more" not in said
+
+
+def test_several_of_them_are_counted() -> None:
+    ((at, said),) = false_force_doubt(CYCLES, spoiled({300: 900.0, 711: -900.0, 1200: 1200.0}))
+    assert at == 300
+    assert "(and so at 2 more)" in said
+
+
+def test_a_force_that_goes_with_the_deflection_is_none_that_was_read_falsely() -> None:
+    assert false_force_doubt(CYCLES, spoiled({})) == ()
+    tapped = CYCLES.copy()
+    tapped[300] += 0.5
+    assert false_force_doubt(tapped, spoiled({300: 900.0})) == ()
+
+
+def test_a_line_that_was_cut_within_its_force_is_doubted(tmp_path: Path) -> None:
+    """ESP32 and Arduino loggers lose the end of a line at a reset: 6 for 614.35."""
+    rows = [f"{0.1 * i:.1f},{0.1 * i:.3f},{4.0 * i:.2f}" for i in range(200)]
+    rows[150] = rows[150][: rows[150].rindex(",") + 2]
+    (tmp_path / "a.csv").write_text("\n".join(["time [s],deflection [mm],force [N]", *rows]) + "\n")
+    found = understand(tmp_path / "a.csv", Choices(part=True)).recording
+    (doubt,) = found.doubts
+    assert doubt.startswith("row 152, column 'force [N]': the force is 6 N and ")
+    assert len(found) == 200
