@@ -274,6 +274,12 @@ def measures(unit: str, si: str) -> bool:
     return True
 
 
+def are_apart(unit: str, other: str) -> bool:
+    """Whether two texts are units of one quantity, and not of one size: N and kN."""
+    both = [si for si in QUANTITIES if measures(unit, si) and measures(other, si)]
+    return any(replace(conversion(unit, si), unit=other) != conversion(other, si) for si in both)
+
+
 def meant_unit(unit: str, si: str) -> str:
     """Return the unit that is meant by one of something else, the force by the mass of a scale or a torque, the
     deflection by an angle; "" where none is.

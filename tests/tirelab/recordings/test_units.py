@@ -12,6 +12,7 @@ from tirelab.recordings.units import (
     QUANTITIES,
     STANDARD_ATMOSPHERE,
     UnitError,
+    are_apart,
     conversion,
     given_conversion,
     is_unit,
@@ -281,3 +282,47 @@ def test_no_unit_is_offered_for_what_counts_nothing_or_what_a_load_cell_bears(un
     with pytest.raises(UnitError) as caught:
         conversion(unit, si)
     assert caught.value.likely == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "unit"),
+    [
+        ("Force [N] x10", "Force", "N x10"),
+        ("Force [N]*10", "Force", "N *10"),
+        ("Force [N] (x10)", "Force", "N (x10)"),
+        ("Force (N) x10", "Force", "N x10"),
+        ("Force [N] /10", "Force", "N /10"),
+        ("Force [N] 10^3", "Force", "N 10^3"),
+        ("Force [N] max", "Force max", "N"),
+        ("Force [N] setpoint", "Force setpoint", "N"),
+        ("Force [N]/Area [mm2]", "Force /Area [mm2]", "N"),
+        ("Force [N] [filtered]", "Force", "N"),
+        ("Force [N] 2", "Force", "N"),
+        ("Force [N].1", "Force", "N"),
+    ],
+)
+def test_what_stands_behind_the_brackets_of_a_unit(text: str, name: str, unit: str) -> None:
+    assert split_header(text) == (name, unit)
+
+
+@pytest.mark.parametrize("unit", ["N x10", "N *10", "N (x10)", "N\N{MULTIPLICATION SIGN}10", "x10 N"])
+def test_a_factor_behind_a_unit_is_asked_about(unit: str) -> None:
+    with pytest.raises(UnitError, match="does 1 in the column stand for 10 N") as caught:
+        conversion(unit, "N")
+    assert caught.value.likely == "10 N"
+
+
+@pytest.mark.parametrize(
+    ("unit", "other", "apart"),
+    [
+        ("N", "kN", True),
+        ("mm", "in", True),
+        ("bar", "bar abs", True),
+        ("s", "sec", False),
+        ("C", "degC", False),
+        ("mm", "N", False),
+        ("mm", "words", False),
+    ],
+)
+def test_units_of_one_quantity_that_are_not_of_one_size(unit: str, other: str, apart: bool) -> None:
+    assert are_apart(unit, other) is apart

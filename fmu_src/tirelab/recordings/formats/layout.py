@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from ..units import is_unit, split_header
+from ..units import are_apart, is_unit, split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
@@ -377,4 +377,8 @@ def _header(cell: str, number: int) -> Header:
 
 
 def _with_unit(header: Header, cell: str) -> Header:
-    return Header(header.name, header.unit or bare_unit(cell) or None, header.text)
+    """Return a header with the unit of a cell below it; where its own is another one, with both, which is none."""
+    unit, own = bare_unit(cell), header.unit
+    if own and unit and are_apart(own, unit):
+        return Header(header.name, f"{own} or {unit}", header.text)
+    return Header(header.name, own or unit or None, header.text)
