@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
+from .unit_words import CASED, COMMON, LIKELY, LOOKALIKES, MICRO_LOST, SPELLINGS, USUAL
 from .vocabulary import is_measured
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 MOST_TEXTS = 4096
 """Most texts that are remembered as units or none: the tables of a workbook ask for the same ones many times."""
+
+SHORTEST_WORD = 3
+"""Letters of a unit of which a large first one says nothing: Kgf, not Mm, which may have a prefix."""
 
 STANDARD_ATMOSPHERE = 101_325.0
 """Ambient pressure [Pa] taken off an absolute pressure (ISO 2533:1975, sea level)."""
@@ -34,50 +38,6 @@ OF_A_SPECIMEN = {
 ANGLES = frozenset({"rad", "mrad", "radian", "radians", "deg", "degree", "degrees", "°", "rev", "turn"})
 """Units of the angle that a test of torsion states in place of a length."""
 
-_COMMON = {
-    "s": ("s", "ms", "us", "min", "h"),
-    "m": ("m", "cm", "mm", "in", "ft"),
-    "N": ("N", "kN", "lbf", "kgf"),
-    "Pa": ("Pa", "kPa", "MPa", "bar", "mbar", "psi"),
-    "K": ("K", "degC", "degF"),
-    "m/s": ("m/s", "mm/s", "km/h", "mph"),
-}
-# Words such as min, in and h may be part of a name.
-_USUAL = frozenset(unit for units in _COMMON.values() for unit in units) - {"min", "in", "h"}
-# Instron's own exports write the ring above for a degree.
-_LOOKALIKES = str.maketrans(
-    {"\N{GREEK SMALL LETTER MU}": "\N{MICRO SIGN}"}
-    | dict.fromkeys("\N{RING ABOVE}\N{MASCULINE ORDINAL INDICATOR}", "\N{DEGREE SIGN}")
-)
-# Spellings that mean one thing only where the quantity is known; pint reads "C" as coulomb.
-_SPELLINGS = {
-    ("K", "C"): "degC",
-    ("K", "F"): "degF",
-    ("K", "deg C"): "degC",
-    ("K", "deg F"): "degF",
-    ("K", "° C"): "degC",
-    ("K", "° F"): "degF",
-    ("K", "℃"): "degC",
-    ("K", "℉"): "degF",
-    ("s", "S"): "s",
-    ("s", "Sec"): "s",
-    ("s", "Seconds"): "s",
-    ("N", "Newton"): "N",
-    ("N", "Newtons"): "N",
-    ("N", "lbF"): "lbf",
-    ("N", "kp"): "kgf",
-    # torques, which are no forces: pint's Nm is a length
-    **{("N", f"{force}{arm}"): f"{force}*{arm}" for force in ("N", "kN", "mN") for arm in ("m", "cm", "mm")},
-    **{("N", f"{a}{b}"): "ft*lbf" for a, b in (("ft", "-lb"), ("lb", "-ft"), ("ft", "-lbf"), ("lbf", "-ft"))},
-    **{("N", f"{a}{b}"): "in*lbf" for a, b in (("in", "-lb"), ("lb", "-in"), ("in", "-lbf"), ("lbf", "-in"))},
-    ("m", "°"): "deg",
-    # pint's mil is an angle
-    ("m", "mil"): "thou",
-    ("m", "mils"): "thou",
-    **{("s", word): unit for word, unit in (("秒", "s"), ("毫秒", "ms"), ("分", "min"))},
-    **{("m", word): unit for word, unit in (("米", "m"), ("厘米", "cm"), ("毫米", "mm"), ("微米", "um"))},
-    **{("N", word): unit for word, unit in (("牛", "N"), ("牛顿", "N"), ("千牛", "kN"), ("公斤力", "kgf"))},
-}
 # Names and small exponents only: pint would also work out 9**9**9 for us.
 _WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
 _UNIT = re.compile(rf"[°Δ%]?{_WORD}(?:(?:\^|\*\*)?-?[1-4]|[²³])?")
@@ -91,7 +51,8 @@ _SO_MANY = re.compile(
     r"x?\s*(?P<value>\d+(?:\.\d+)?)(?:\s*/\s*(?P<by>[1-9]\d*))?\s*\*?\s*(?P<unit>[^\W\d].*)", re.ASCII
 )
 _TIMES = re.compile(
-    r"(?P<unit>[^\W\d].*?)\s*[\[(]?\s*[x*\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*(?P<value>\d+(?:\.\d+)?)\s*[\])]?(?P<by>)",
+    r"(?P<unit>[^\W\d].*?)\s*[\[(]?\s*[x*\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*"
+    r"(?P<value>\d+(?:\.\d+)?)\s*[\])]?(?P<by>)",
     re.ASCII,
 )
 _FACTOR = re.compile(r"[\[(]?\s*(?:[x*/\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*\d|10(?:\^|\*\*|e)).*")
@@ -101,14 +62,6 @@ MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\](?P<more>.*)")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
 _WITHIN_A_NAME = re.compile(r"(?P<name>[^()]*)\((?P<unit>[^()]*)\)(?P<more>[^()]+)")
-_LIKELY = {
-    **{("N", word): "lbf" for word in ("lb", "lbs", "pound", "pounds")},
-    **{("N", word): "kgf" for word in ("kg", "kgs", "kilogram", "kilograms")},
-    **{("N", word): "gf" for word in ("g", "gr", "gram", "grams", "gramm", "gramme", "grammes")},
-    **{("N", word): "ozf" for word in ("oz", "ounce", "ounces")},
-    ("Pa", "kgf"): "kgf/cm^2",
-    ("s", "hz"): "s, the time of each row",
-}
 _FULL_WIDTH = str.maketrans("（）［］【】", "()[][]")
 FLAT_WORDS = frozenset({"flat", "inf", "+inf", "-inf", "infinity", "+infinity", "-infinity", "infinite", "∞"})
 """What a radius may say instead of a number."""
@@ -174,21 +127,20 @@ def conversion(unit: str, si: str) -> Conversion:
     Errors: UnitError with the likely spelling when pint does not know the unit or it measures something else.
     Source: pint's default registry (definitions of NIST SP 811).
     """
-    text = _DOT.sub("*", " ".join(unit.translate(_LOOKALIKES).split()).removesuffix("."))
+    text = _DOT.sub("*", " ".join(unit.translate(LOOKALIKES).split()).removesuffix("."))
     quantity = QUANTITIES[si]
     gauge = _GAUGE.match(text) if si == "Pa" else None
     absolute = gauge is not None and gauge["kind"].startswith("a")
-    spelled = gauge["unit"] if gauge else _SPELLINGS.get((si, text), text)
+    spelled = gauge["unit"] if gauge else SPELLINGS.get((si, text), text)
     spelled = "percent" if spelled == "%" else spelled
     registry = _registry()
-    try:
-        if not all(_UNIT.fullmatch(word) for word in _JOINT.split(spelled)):
-            raise ValueError(spelled)
-        parsed = registry.Unit(spelled)
-        known = parsed.dimensionality
-    except Exception:  # pint raises whatever its tokenizer meets: AttributeError, AssertionError, ...
+    parsed = _parsed(spelled)
+    if parsed is None or parsed.dimensionality != registry.Unit(si).dimensionality:
+        parsed = _parsed(_in_small_letters(spelled, si)) or parsed
+    if parsed is None:
         what = f"unknown unit {unit[:40]!r} of {quantity}; {_advice(text, si)}"
-        raise UnitError(what, _likely(text, si)) from None
+        raise UnitError(what, _likely(text, si))
+    known = parsed.dimensionality
     if known != registry.Unit(si).dimensionality or "delta_" in spelled:
         measured, becomes = OF_A_SPECIMEN.get(si, ("", ""))
         # an angle has no dimension either
@@ -198,7 +150,7 @@ def conversion(unit: str, si: str) -> Conversion:
         advice = becomes if measured and of_specimen else _advice(text, si, known=True)
         advice = _of_torsion(text, si) or advice
         if known == registry.Unit("V").dimensionality:
-            usual = "mm" if si == "m" else _COMMON[si][0]
+            usual = "mm" if si == "m" else COMMON[si][0]
             advice = f"write the {quantity} of 1 {text}, the calibration, as its unit: 250 {usual}"
         what = f"{unit[:40]!r} is not a unit of {quantity}; {advice}"
         raise UnitError(what, _likely(text, si, known=True))
@@ -209,6 +161,29 @@ def conversion(unit: str, si: str) -> Conversion:
         divisor = 1
     offset = -STANDARD_ATMOSPHERE if absolute else float(zero.to(si).magnitude)
     return Conversion(unit, si, 1.0 if divisor > 1 else factor, float(divisor), offset, absolute)
+
+
+def _parsed(text: str) -> "pint.Unit | None":
+    """Return the unit that pint reads in a text; None where it knows none."""
+    try:
+        return _registry().Unit(text) if all(map(_UNIT.fullmatch, _JOINT.split(text))) else None
+    except Exception:  # pint raises whatever its tokenizer meets: AttributeError, AssertionError, ...
+        return None
+
+
+def _in_usual_case(text: str, si: str) -> str:
+    """Return the unit that one with other letters large, KN, MM or DAN, is in common use; "" where there is none."""
+    words = [*(unit for unit in CASED if unit.lower() == text.lower()), _in_small_letters(text.title(), si)]
+    size = _registry().Unit(si).dimensionality
+    fits = [unit for unit in words if (parsed := _parsed(unit)) is not None and parsed.dimensionality == size]
+    return fits[0] if fits else ""
+
+
+def _in_small_letters(text: str, si: str) -> str:
+    """Return a unit that begins like a sentence, Inch or Lbf, in small letters, in which its first is no prefix; any
+    other text as it is."""
+    small = text.lower()
+    return SPELLINGS.get((si, small), small) if text == small.title() and len(text) >= SHORTEST_WORD else text
 
 
 @cache
@@ -241,7 +216,7 @@ def _stand_in(unit: str, si: str) -> str:
     """Return the unit of a length or a force as which an angle or a torque is read; "" for any other. J is energy."""
     if si == "m" and unit.casefold() in ANGLES:
         return "mm"
-    spelled = _SPELLINGS.get((si, unit), _DOT.sub("*", unit))
+    spelled = SPELLINGS.get((si, unit), _DOT.sub("*", unit))
     if si != "N" or "j" in unit.casefold() or not is_unit(spelled) or unit.strip() in ("%", "-"):
         return ""
     torque = _registry().Unit("N*m").dimensionality
@@ -284,6 +259,8 @@ def meant_unit(unit: str, si: str) -> str:
     """Return the unit that is meant by one of something else, the force by the mass of a scale or a torque, the
     deflection by an angle; "" where none is.
     """
+    if measures(unit, si):
+        return ""
     return _likely(unit.strip(), si, known=True) or _stand_in(unit.strip(), si)
 
 
@@ -297,7 +274,7 @@ def split_header(text: str) -> tuple[str, str | None]:
             return _with_what_follows(found["name"].strip(), found["unit"].strip(), more.strip())
     within = _WITHIN_A_NAME.fullmatch(plain)
     # Other words in parentheses within a name belong to it: Force (left) filtered.
-    if within and within["name"] and within["unit"] in _USUAL:
+    if within and within["name"] and within["unit"] in USUAL:
         name, more = within["name"].strip(" _"), within["more"].strip(" _")
         if _FACTOR.fullmatch(more):
             return _with_what_follows(name, within["unit"], more)
@@ -358,7 +335,7 @@ def parse_quantity(text: str, si: str) -> float:
 
 def with_likely_unit(value: float, usual: str, si: str) -> str:
     """Return a number that was written without a unit with the one in which it is nearest to a usual quantity."""
-    size, units = parse_quantity(usual, si), [conversion(unit, si) for unit in _COMMON[si]]
+    size, units = parse_quantity(usual, si), [conversion(unit, si) for unit in COMMON[si]]
     in_unit = {c.unit: (size - c.offset) / c.multiplied for c in units}
     far = {unit: abs(math.log(abs(value) / number)) for unit, number in in_unit.items()}
     return f"{value:.15g} {min(far, key=far.__getitem__)}"
@@ -366,17 +343,20 @@ def with_likely_unit(value: float, usual: str, si: str) -> str:
 
 def _likely(unit: str, si: str, known: bool = False) -> str:
     """Return the unit that was likely meant, "" where none is near; known: it is a unit, but of something else."""
-    hint = _LIKELY.get((si, unit.lower()), "")
+    hint = LIKELY.get((si, unit.lower()), "")
+    lost = MICRO_LOST.fullmatch(unit)
+    if lost and lost["unit"] == si:
+        return f"u{si}"
+    usual = _in_usual_case(unit, si)
+    if usual:
+        return usual
     if hint or known:
         return hint if hint and measures(hint, si) else ""
-    smaller = unit[:1].lower() + unit[1:]
-    if smaller != unit and measures(smaller, si):
-        return smaller  # DaN
     if any(map(str.isdigit, unit)):
         # Behind a force it may be what the load cell bears: Load (500 N).
         many = _so_many(unit) if si != "N" or unit.startswith("x") or not unit[0].isdigit() else ""
         return many if many and measures(many.split(" ", 1)[1], si) else ""
-    names = {name.lower(): name for name in _COMMON[si]}
+    names = {name.lower(): name for name in COMMON[si]}
     near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
     return names[near[0]] if near else ""
 
@@ -391,9 +371,9 @@ def _so_many(unit: str) -> str:
 
 
 def _advice(unit: str, si: str, known: bool = False) -> str:
-    meant = _LIKELY.get((si, unit.lower())) or _likely(unit, si, known)
+    meant = LIKELY.get((si, unit.lower())) or _likely(unit, si, known)
     if meant and meant == _so_many(unit):
         return f"does 1 in the column stand for {meant}?"
     if meant:
         return f"did you mean {meant}?"
-    return f"write {', '.join(_COMMON[si][:-1])} or {_COMMON[si][-1]}"
+    return f"write {', '.join(COMMON[si][:-1])} or {COMMON[si][-1]}"

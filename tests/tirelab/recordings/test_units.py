@@ -326,3 +326,49 @@ def test_a_factor_behind_a_unit_is_asked_about(unit: str) -> None:
 )
 def test_units_of_one_quantity_that_are_not_of_one_size(unit: str, other: str, apart: bool) -> None:
     assert are_apart(unit, other) is apart
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "one"),
+    [
+        ("Inch", "m", 0.0254),
+        ('"', "m", 0.0254),
+        ("Mils", "m", 2.54e-5),
+        ("milli-inch", "m", 2.54e-5),
+        ("Millimeter", "m", 1e-3),
+        ("мкм", "m", 1e-6),
+        ("Lbf", "N", 4.4482216152605),
+        ("lb-f", "N", 4.4482216152605),
+        ("pounds-force", "N", 4.4482216152605),
+        ("Kgf", "N", 9.80665),
+        ("kg-f", "N", 9.80665),
+        ("gram-force", "N", 9.80665e-3),
+        ("кН", "N", 1000.0),
+        ("мин", "s", 60.0),
+        ("초", "s", 1.0),
+    ],
+)
+def test_units_in_other_words(unit: str, si: str, one: float) -> None:
+    assert in_si(1.0, unit, si) == pytest.approx(one, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("unit", "si", "likely"),
+    [
+        ("DAN", "N", "daN"),
+        ("LBF", "N", "lbf"),
+        ("tonf", "N", "tf"),
+        ("t", "N", "tf"),
+        ("MM", "m", "mm"),
+        ("M", "m", "m"),
+        ("UM", "m", "um"),
+        ("?m", "m", "um"),
+        ("\N{LATIN CAPITAL LETTER A WITH CIRCUMFLEX}\N{MICRO SIGN}m", "m", "um"),
+        ("\N{REPLACEMENT CHARACTER}s", "s", "us"),
+        ("MPA", "Pa", "MPa"),
+    ],
+)
+def test_a_unit_of_another_size_is_never_offered(unit: str, si: str, likely: str) -> None:
+    with pytest.raises(UnitError) as caught:
+        conversion(unit, si)
+    assert caught.value.likely == likely
