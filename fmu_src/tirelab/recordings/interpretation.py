@@ -19,7 +19,7 @@ from .plausibility import Doubts, doubts_of, too_deep
 from .reading_plan import Plan
 from .rounded_clock import lost_in_single
 from .rows import Rows, complete_rows
-from .samples import descends, gap_notes, over_midnight
+from .samples import descends, gap_notes, over_midnight, over_the_top
 from .thousands_doubt import thousands_doubt
 from .units import STANDARD_ATMOSPHERE, Conversion
 
@@ -158,6 +158,10 @@ def _time_from_first(
     time, midnight = over_midnight(time)
     if midnight is not None:
         notes.append(f"the clock passes midnight at {rows.place(midnight)}: a day added from there on")
+    if read is not None and not plan.headers["time"].dated:
+        time, anew = over_the_top(time, plan.conversions["time"].multiplied)
+        if anew is not None:
+            notes.append(f"the counter of the time is full before {rows.place(anew)}: it goes on from there")
     if since_1970:
         notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
     return time, notes

@@ -23,6 +23,12 @@ MOST_TESTS = 50
 DAY, LONGEST_PAUSE = 86_400.0, 3600.0
 """A clock without a date begins anew after so long [s]; what is recorded does not stop for longer than the latter."""
 
+COUNTER_BITS = (16, 32)
+"""A counter of a microcontroller begins anew after so many binary digits."""
+
+SOON = 3.0
+"""The first step after a counter began anew is at most this many usual ones."""
+
 LARGEST_PLAUSIBLE = {channel.name: channel.largest for channel in CHANNELS if math.isfinite(channel.largest)}
 """Magnitudes [SI] that no rig and no ride reaches: the unit of a larger number is wrong."""
 
@@ -94,6 +100,25 @@ def over_midnight(time: FloatArray) -> tuple[FloatArray, int | None]:
         return time, None
     first = int(back[0]) + 1
     return np.concatenate([time[:first], time[first:] + DAY]), first
+
+
+def over_the_top(time: FloatArray, one: float) -> tuple[FloatArray, int | None]:
+    """Return time [s] that goes on where its counter of 16 or 32 bits began anew, and the first sample after that; None
+    where it did not. one: of the counter [s]
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        counts = np.rint(time / one)
+        steps = np.diff(counts)
+        if not len(steps) or steps.min() >= 0.0 or np.max(np.abs(time / one - counts)) > 1e-3:
+            return time, None
+    back = steps < 0.0
+    usual = float(np.median(steps))
+    for bits in COUNTER_BITS:
+        anew = steps[back] + 2.0**bits
+        if anew.min() > 0.0 and anew.max() <= SOON * usual:
+            turns = np.concatenate([[0.0], np.cumsum(back)])
+            return (counts + 2.0**bits * turns) * one, int(np.argmax(back)) + 1
+    return time, None
 
 
 def descends(time: FloatArray) -> bool:

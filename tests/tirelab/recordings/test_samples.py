@@ -13,6 +13,7 @@ from tirelab.recordings.samples import (
     find_gaps,
     gap_notes,
     over_midnight,
+    over_the_top,
 )
 
 
@@ -121,3 +122,33 @@ class TestClock:
     )
     def test_time_that_falls_throughout(self, time: list[float], falls: bool) -> None:
         assert descends(np.array(time)) is falls
+
+
+class TestCounters:
+    @pytest.mark.parametrize("low", [0.0, -(2.0**15)])
+    def test_one_of_16_bits_goes_on(self, low: float) -> None:
+        true = 500.0 * np.arange(400)
+        time, first = over_the_top(1e-3 * ((true % 2**16) + low), 1e-3)
+        np.testing.assert_allclose(time, 1e-3 * (true + low), rtol=1e-12)
+        assert first == 132  # 131 steps of 500 are 65,500
+
+    def test_one_of_32_bits_goes_on(self) -> None:
+        true = 4_294_967_296.0 - 2e7 + 1e5 * np.arange(400)
+        time, first = over_the_top(1e-6 * (true % 2**32), 1e-6)
+        np.testing.assert_allclose(time, 1e-6 * true, rtol=1e-12)
+        assert first == 200
+
+    @pytest.mark.parametrize(
+        "counts",
+        [
+            500.0 * np.arange(100),
+            500.0 * (np.arange(100) % 50),  # begins anew with a reset
+            np.concatenate([[65_000.0], 500.0 * np.arange(3.0, 40.0)]),  # 2036 later, four steps
+            0.5 + 500.0 * np.arange(200) % 2**16,
+        ],
+        ids=["rises", "reset", "a pause", "no whole numbers"],
+    )
+    def test_what_is_no_full_counter_stays(self, counts: np.ndarray) -> None:
+        time, first = over_the_top(1e-3 * counts, 1e-3)
+        assert first is None
+        np.testing.assert_array_equal(time, 1e-3 * counts)
