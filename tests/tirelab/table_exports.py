@@ -144,3 +144,26 @@ def _(path: Path, m: Motion) -> None:
 def _(path: Path, m: Motion) -> None:
     head = "Time (s),Displacement (mm),Force (N)\n"
     path.write_text(head + table((np.floor(m.time * 5.0) / 5.0, mm(m), m.force)))
+
+
+@export("symbols_with_units.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_text("t_ms,x_mm,F_kN\n" + table((1e3 * m.time, mm(m), 1e-3 * m.force), digits=8))
+
+
+@export("capitals_at_the_start.csv")
+def _(path: Path, m: Motion) -> None:
+    columns = (m.time, m.deflection / INCH, m.force / POUND)
+    path.write_text("Time (Sec),Stroke (Inch),Load (Lbf)\n" + table(columns, digits=7))
+
+
+@export("capitals.dat")
+def _(path: Path, m: Motion) -> None:
+    rows = [f"{t:15.8E}{x:15.8E}{f:15.8E}" for t, x, f in zip(m.time, m.deflection, m.force, strict=True)]
+    path.write_text("   TIME (S)    DISPL (M)    FORCE (N)\n" + "\n".join(rows).replace("E", "D") + "\n")
+
+
+@export("full_counter.csv")
+def _(path: Path, m: Motion) -> None:
+    counts = (1e6 * m.time + 2.0**32 - 1e7) % 2.0**32
+    path.write_text("time (us),displacement (mm),force (N)\n" + table((counts, mm(m), m.force)))

@@ -239,6 +239,13 @@ def is_symbol(name: str, channel: str) -> bool:
     return channel in (_SYMBOLS.get(name.lower()), _SYMBOLS.get(name.upper()))
 
 
+def may_be_symbol(header: Header, channel: Channel) -> bool:
+    """Return whether a column is called by the channel's symbol and a unit behind it: `F_kN`, `t_ms`."""
+    base, _, _ = header.name.rpartition("_")
+    unit = unit_of_column(header, channel.name)
+    return len(base) == 1 and unit is not None and may_be(Header(base, unit, header.text), channel)
+
+
 def symbolises_another(name: str) -> bool:
     """Return whether a name is the symbol of a channel that is neither deflection nor force: `v` of the speed."""
     return _SYMBOLS.get(name, "force") not in ("deflection", "force")

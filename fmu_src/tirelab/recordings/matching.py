@@ -14,6 +14,7 @@ from .channels import (
     may_be_foreign,
     may_be_qualified,
     may_be_second,
+    may_be_symbol,
     unit_of_column,
     without_source,
 )
@@ -212,6 +213,7 @@ def _otherwise_named(free: Sequence[tuple[int, Header]], channel: Channel) -> li
     sourceless = [(i, without_source(header)) for i, header in free]
     for named, columns in (
         (may_be_foreign, free),
+        (may_be_symbol, free),
         (may_be_counted, free),
         (may_be, sourceless),
         (may_be_foreign, sourceless),
