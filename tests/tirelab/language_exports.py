@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 from pathlib import Path
 
-from exported import Motion, export, mm, table
+from exported import KILOPOND, Motion, export, mm, table
 
 
 def _with_commas(m: Motion, names: str) -> str:
@@ -90,3 +90,37 @@ def _(path: Path, m: Motion) -> None:
         "Y_Unit_Label\tmm\tN\t\nDelta_X\t0,1\t0,1\t\n***End_of_Header***\t\t\nX_Value\tDisplacement\tForce\tComment\n"
     )
     path.write_text(head + table((m.time, mm(m), m.force), "\t", comma=True))
+
+
+@export("korean.csv")
+def _(path: Path, m: Motion) -> None:
+    head = "시험기,만능\n시간(s),변위(mm),하중(N)\n"
+    path.write_bytes((head + table((m.time, mm(m), m.force))).encode("cp949"))
+
+
+@export("korean_unicode.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_text(
+        "시간(초),변위(mm),하중(kgf)\n" + table((m.time, mm(m), m.force / KILOPOND), digits=7), "utf-8"
+    )
+
+
+@export("taiwan.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_bytes(("時間(s),位移(mm),荷重(N)\n" + table((m.time, mm(m), m.force))).encode("big5"))
+
+
+@export("russian_units.csv")
+def _(path: Path, m: Motion) -> None:
+    rows = table((m.time, mm(m), 1e-3 * m.force), ";", 8, comma=True)
+    path.write_bytes(("Время, с;Перемещение, мм;Нагрузка, кН\n" + rows).encode("cp1251"))
+
+
+@export("deformation_cz.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_text(_with_commas(m, "Čas [s];Deformace [mm];Zatížení [N]"), "utf-8")
+
+
+@export("standard_force_pl.csv")
+def _(path: Path, m: Motion) -> None:
+    path.write_bytes(_with_commas(m, "Czas [s];Ugięcie [mm];Siła standardowa [N]").encode("cp1250"))

@@ -19,7 +19,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "zeitstempel",
         ),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
-        *("czas", "godzina", "cas", "время"),
+        *("czas", "godzina", "cas", "время", "시간", "경과 시간", "시험 시간"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
         *(
@@ -41,7 +41,15 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("weg", "traversenweg", "standardweg", "federweg", "kolbenweg", "hub", "stauchung", "verformung"),
         *("einfederung", "eindruckung", "eindrueckung", "prufweg", "pruefweg", "dehnung", "verlangerung"),
         *("deplacement", "deplacement traverse", "deplacement de la traverse", "course", "ecrasement"),
-        *("enfoncement", "fleche", "allongement", "allongement standard", "course standard", "traverse"),
+        *(
+            "deplacement verin",
+            "enfoncement",
+            "fleche",
+            "allongement",
+            "allongement standard",
+            "course standard",
+            "traverse",
+        ),
         *("course traverse", "course de traverse", "course de la traverse", "deplacement de traverse"),
         *("desplazamiento", "desplazamiento del cabezal", "recorrido", "carrera", "deformacion", "deflexion"),
         *(
@@ -52,7 +60,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "axial displacement",
         ),
         *("standard travel", "standard extension"),
-        *("spostamento", "corsa", "deformazione", "schiacciamento", "freccia"),
+        *("spostamento", "corsa", "corsa traversa", "deformazione", "schiacciamento", "freccia"),
         *("deslocamento", "deformacao", "verplaatsing", "indrukking"),
         *("compressive displacement", "compressive extension", "extension", "position", "pos"),
         *("machine extension", "disp", "displ", "axial disp", "wegaufnehmer", "kolbenhub", "maschinenweg"),
@@ -66,9 +74,9 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "settlement",
             "displacment",
         ),
-        *("przemieszczenie", "ugiecie", "droga", "posuv", "posunuti", "draha"),
+        *("przemieszczenie", "ugiecie", "droga", "posuv", "posunuti", "draha", "deformace", "skok"),
         *("перемещение", "деформация", "ход"),
-        *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量"),
+        *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量", "변위", "스트로크"),
     ),
     "radius": (
         "oberflachenradius",
@@ -100,8 +108,18 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("fuerza", "fuerza vertical", "fuerza radial", "carga"),
         *("forza", "carico", "forca", "kracht", "belasting"),
         *("compressive load", "axial force", "axial load", "standard force", "compression force", "fz", "fn"),
-        *("siła", "obciazenie", "nacisk", "sila", "zatizeni", "сила", "нагрузка", "усилие"),
-        *("力", "载荷", "负荷", "试验力", "試験力", "荷重"),
+        *(
+            "siła",
+            "siła standardowa",
+            "obciazenie",
+            "nacisk",
+            "sila",
+            "zatizeni",
+            "сила",
+            "нагрузка",
+            "усилие",
+        ),
+        *("力", "载荷", "负荷", "试验力", "試験力", "荷重", "하중", "힘", "시험력"),
     ),
     "pressure": (
         *("druck", "luftdruck", "reifendruck", "innendruck", "fulldruck", "fuelldruck", "reifenfulldruck"),
@@ -197,7 +215,7 @@ STRAINED = frozenset(
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
 
-_SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff]")
+_SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7a3]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
 _COUNTED = re.compile(
     r"(?P<name>.*?[^\W\d_])(?:(?:[ ._#-]+(?:run|trial|test|versuch|essai|ensayo|prova))?[ ._#-]*\d+|_duplicated_\d+)",
@@ -210,7 +228,8 @@ def plain(name: str) -> str:
     `deplacement traverse`."""
     letters = unicodedata.normalize("NFKD", name.casefold().replace("ß", "ss"))
     kept = "".join(c for c in letters if not unicodedata.combining(c))
-    return " ".join(re.sub(r"[\s_.'’-]+", " ", kept).split())
+    # what stays in parts, as the letters of Korean do, is put together again
+    return unicodedata.normalize("NFC", " ".join(re.sub(r"[\s_.'’-]+", " ", kept).split()))
 
 
 def foreign_channel(name: str) -> str | None:

@@ -33,6 +33,7 @@ ASKED = {
     "epoch_ms.csv": "column 'timestamp': has no unit",
     "epoch_us.csv": "column 'ts': has no unit",
     "version_7_3.mat": "no unit",
+    "capitals.dat": "no column for deflection",
 }
 """What these leave open: the command that is printed, copied, reads them."""
 
@@ -60,6 +61,9 @@ SAID = {
     "epoch.csv": "time counted from the first sample, which is at 1748959500.250000 s since 1970",
     "numbers_as_text.xlsx": "numbers that are stored as text read with decimal commas",
     "trapezium_ja.csv": "not UTF-8 (byte 0x8e at 0): read as Shift-JIS (CP 932)",
+    "korean.csv": "not UTF-8 (byte 0xbd at 0): read as EUC-KR (CP 949)",
+    "taiwan.csv": "not UTF-8 (byte 0xae at 0): read as Big5 (CP 950)",
+    "full_counter.csv": "the counter of the time is full before row 102: it goes on from there",
     "labview_headings.lvm": "units taken from the row above the names that begins with 'Y_Unit_Label'",
     "negative_compression.csv": "the rig counts compression negative: deflection and force turned in sign",
 }

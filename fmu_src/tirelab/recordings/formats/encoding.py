@@ -26,6 +26,8 @@ _TOGETHER = re.compile(rb"[\x80-\xff]{2}")
 LOCAL = {
     "gb18030": "GBK (GB 18030)",
     "cp932": "Shift-JIS (CP 932)",
+    "cp949": "EUC-KR (CP 949)",
+    "cp950": "Big5 (CP 950)",
     "cp1250": "Windows-1250 (Central European)",
     "cp1251": "Windows-1251 (Cyrillic)",
 }

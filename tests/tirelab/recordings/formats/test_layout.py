@@ -388,7 +388,9 @@ def test_the_settings_above_the_end_of_a_header_name_no_columns(tmp_path: Path) 
 
 def test_a_unit_in_the_name_and_another_one_below_are_asked_about(path: Path) -> None:
     text = "Zeit [s];Stroke [mm];Load [N]\ns;mm;kN\n" + rows()
-    with pytest.raises(RecordingError, match=r"'Load \[N\]': unknown unit 'N or kN' of force.*--units force=UNIT"):
+    with pytest.raises(
+        RecordingError, match=r"'Load \[N\]': unknown unit 'N or kN' of force.*--units force=UNIT"
+    ):
         read(path, text)
     assert read(path, text, units={"force": "kN"}).force.max() == pytest.approx(1e3 * F.max(), abs=1.0)
     assert read(path, text.replace("kN", "Newton")).force.max() == pytest.approx(F.max(), abs=1e-3)
