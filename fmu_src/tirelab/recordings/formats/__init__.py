@@ -1,6 +1,7 @@
 """Files of measurements: one loader per format, each giving the same kind of table."""
 
 import re
+import zipfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -12,7 +13,7 @@ from .json import JsonTable
 from .matlab import matlab_table
 from .mdf import MdfTable
 from .parquet import ParquetTable
-from .table import Columns, Header, RecordingError, Table, Wanted, quoted
+from .table import Columns, Header, RecordingError, Table, Wanted, listed, quoted
 from .tdms import TdmsTable
 
 __all__ = [
@@ -80,8 +81,18 @@ _SIGNATURES = (
     (b"\x28\xb5\x2f\xfd", "Zstandard", ""),
     (b"|CF,", "imc Famos", "export"),
     (b"%PDF", "PDF", "export"),
+    (b"\x89PNG", "a picture (PNG)", "export"),
+    (b"\xff\xd8\xff", "a picture (JPEG)", "export"),
+    (b"{\\rtf", "rich text (RTF)", "export"),
+    (b"<html", "HTML", "save"),
+    (b"<!doctype html", "HTML", "save"),
+    (b"<table", "HTML", "save"),
+    (b"<?xml", "XML", "save"),
 )
 """First bytes of files that are no text: what they are, and the suffix under which they are read, where they are."""
+
+_OF_WORKBOOKS = ("[Content_Types].xml", "xl/", "mimetype", "content.xml")
+"""Members of the archive that a workbook is: .xlsx and .ods."""
 
 _CONTROL = re.compile(rb"[\x00-\x08\x0e-\x1a\x1c-\x1f]")
 
@@ -106,9 +117,10 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
     if not start:
         raise RecordingError(f"{path.name} is empty (0 bytes); record again, or export the file anew")
     suffix = path.suffix.lower()
-    kind, read_as = next(((kind, end) for mark, kind, end in _SIGNATURES if start.startswith(mark)), ("", ""))
-    if kind and suffix in TEXT_SUFFIXES:
-        raise RecordingError(f"{path.name} is no text table but {kind}; {_advice(read_as)}")
+    kind, read_as = _kind(path, start)
+    if kind and suffix in (*TEXT_SUFFIXES, *(WORKBOOK_SUFFIXES if read_as in ("", "save") else ())):
+        what = "is no text table but" if suffix in TEXT_SUFFIXES else "cannot be read as a workbook: it is"
+        raise RecordingError(f"{path.name} {what} {kind}; {_advice(read_as)}")
     known = suffix in LOADERS
     if not known and read_as in LOADERS:
         suffix = read_as
@@ -136,9 +148,26 @@ def open_table(path: Path, skip_rows: int | None = None, sheet: str = "") -> Tab
         ) from None
 
 
+def _kind(path: Path, start: bytes) -> tuple[str, str]:
+    """Return what a file that begins so is, if it is no text, and the suffix under which it is read, if it is."""
+    begins = start.removeprefix(b"\xef\xbb\xbf").lstrip()[:20].lower()
+    found = (
+        (kind, end) for mark, kind, end in _SIGNATURES if start.startswith(mark) or begins.startswith(mark)
+    )
+    kind, read_as = next(found, ("", ""))
+    if read_as == ".xlsx":
+        with suppress(OSError, zipfile.BadZipFile), zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+            if not any(name.startswith(_OF_WORKBOOKS) for name in names):
+                return f"a zip archive of {listed(list(map(quoted, names)), most=3)}", ""
+    return kind, read_as
+
+
 def _advice(read_as: str) -> str:
     if read_as in LOADERS:
         return f"rename it to end in {read_as}"
+    if read_as == "save":
+        return "open it in a spreadsheet program and save it as .xlsx or CSV"
     return "export it as text" if read_as else "unpack it"
 
 

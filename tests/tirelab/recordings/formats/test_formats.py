@@ -2,6 +2,7 @@
 
 import builtins
 import importlib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -50,11 +51,29 @@ class TestEveryFormat:
             ("a", b"\x01\x02", "recordings ending in '' cannot be read"),
             ("a.raw", b"|CF,2,1,1;", "is imc Famos; export it as text"),
             ("a.gz", b"\x1f\x8b\x08", "is gzip; unpack it"),
+            ("a.csv", b"\x89PNG\r\n\x1a\n\x00", "is no text table but a picture (PNG); export it as text"),
+            ("a.csv", b"{\\rtf1\\ansi}", "is no text table but rich text (RTF)"),
+            (
+                "a.xls",
+                b"\n<HTML><table><tr><td>1</td></tr></table>",
+                "cannot be read as a workbook: it is HTML; open it in a spreadsheet",
+            ),
+            (
+                "a.xml",
+                b"<?xml version='1.0'?><a/>",
+                "is XML; open it in a spreadsheet program and save it as .xlsx",
+            ),
         ],
     )
     def test_what_cannot_be_read_is_told(self, tmp_path: Path, name: str, content: bytes, said: str) -> None:
         (tmp_path / name).write_bytes(content)
         assert said in refusal(tmp_path / name)
+
+    @pytest.mark.parametrize("name", ["a.zip", "a.csv", "a.xlsx", "a.npz"])
+    def test_a_zip_archive_that_is_no_workbook_is_told(self, tmp_path: Path, name: str) -> None:
+        with zipfile.ZipFile(tmp_path / name, "w") as archive:
+            archive.writestr("run 1.csv", "time,force")
+        assert "a zip archive of 'run 1.csv'; unpack it" in refusal(tmp_path / name)
 
     @pytest.mark.parametrize(
         ("suffix", "module", "package"),
