@@ -85,10 +85,16 @@ class TdmsTable:
         return Columns(tuple(columns[want.index] for want in wanted), sample_place, _notes(self.warned))
 
 
+UNIT_KEYS = ("unit_string", "NI_UnitDescription")
+"""Properties of a channel that state its unit, of DIAdem and of LabVIEW."""
+
+
 def _header(channel: Any, repeated: bool) -> Header:
     name, unit = split_header(channel.name)
     text = f"{channel.group_name}/{channel.name}" if repeated else channel.name
-    stated = str(channel.properties.get("unit_string", "") or "").strip()
+    stated = next(
+        (str(channel.properties[key]).strip() for key in UNIT_KEYS if channel.properties.get(key)), ""
+    )
     dated = channel.dtype is not None and np.dtype(channel.dtype).kind == "M"
     return Header(name, "s" if dated else (stated or unit), text, dated)
 

@@ -52,3 +52,19 @@ class TestTdms:
     )
     def test_other_channels_are_refused(self, path: Path, force: str, said: str) -> None:
         assert said in refusal(path, columns={"deflection": "Stroke", "force": force}, units={"force": "N"})
+
+
+def test_units_as_labview_writes_them(tmp_path: Path) -> None:
+    nptdms = pytest.importorskip("nptdms")
+    clock = {"wf_increment": 0.01, "wf_start_offset": 0.0}
+    channels = [("Stroke", DEFLECTION, "mm"), ("Load", FORCE, "kN")]
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment(
+            [
+                nptdms.ChannelObject("rig", n, v, {**clock, "NI_UnitDescription": unit})
+                for n, v, unit in channels
+            ]
+        )
+    recording = read_recording(tmp_path / "a.tdms", radius="flat")
+    np.testing.assert_allclose(recording.force, FORCE * 1000.0, rtol=3e-16)
+    np.testing.assert_allclose(recording.deflection, DEFLECTION / 1000.0, rtol=3e-16)
