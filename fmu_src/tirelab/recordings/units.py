@@ -255,6 +255,12 @@ def are_apart(unit: str, other: str) -> bool:
     return any(replace(conversion(unit, si), unit=other) != conversion(other, si) for si in both)
 
 
+def is_no_unit(text: str) -> bool:
+    """Whether a text is a word, and neither a unit nor one by which another unit is meant: Absolute, filtered."""
+    word = text.isalpha() and len(text) > SHORTEST_WORD and not is_unit(text)
+    return word and not any(meant_unit(text, si) or _likely(text, si) for si in QUANTITIES)
+
+
 def meant_unit(unit: str, si: str) -> str:
     """Return the unit that is meant by one of something else, the force by the mass of a scale or a torque, the
     deflection by an angle; "" where none is.

@@ -6,16 +6,16 @@ import codecs
 import csv
 import io
 import re
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from ..units import are_apart, is_unit, split_header
+from ..units import are_apart, is_no_unit, is_unit, split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
+from .not_a_table import refuse_labels, refuse_serial_monitor, refuse_split_numbers
 from .number_style import NumberStyle, style_of, with_plain_marks
 from .separator import find_separator
 from .spaced import TAB, spaced_columns, with_tabs
@@ -38,7 +38,6 @@ SAMPLE = 500
 """How many of its lines are looked at for decimal commas and clock times."""
 
 _UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.IGNORECASE)
-_SERIAL = re.compile(r"\s*\d{1,2}:\d\d:\d\d[.,]\d+ -> ")
 
 BELOW_NAMES = 3
 """Most rows of text between the names of the columns and the numbers: units, addresses, remarks."""
@@ -87,7 +86,8 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     first, declared = _preamble(lines)
     if skip_rows is not None:
         first = skip_rows + _preamble(lines[skip_rows:])[0]
-    _refuse_serial_monitor(path, lines[first:])
+    refuse_serial_monitor(path, lines[first:])
+    refuse_labels(path, lines[first:])
     spaced = 0 if declared else spaced_columns(lines[first:])
     if spaced:
         lines = [with_tabs(line, spaced) for line in lines]
@@ -104,6 +104,7 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
     place = find_table(lines, first, declared) if skip_rows is None else None
     start = first if place is None else place.line
     separator = declared or (place.separator if place else find_separator(path, lines[start:]))
+    refuse_split_numbers(path, lines[:start], lines[start:], separator)
     header, header_lines, body = _first_rows(path, lines, start, separator)
     names, in_table, said = _names(lines, start, header, separator)
     widest = max((len(row) for row in body[:SAMPLE]), default=0)
@@ -170,18 +171,6 @@ def column_counted(body: Sequence[Sequence[str]]) -> bool:
 def _cells(rows: Sequence[Sequence[str]], column: int) -> list[str]:
     """Return the cells of one column, blank in rows that are shorter."""
     return [row[column] if column < len(row) else "" for row in rows]
-
-
-def _refuse_serial_monitor(path: Path, lines: Sequence[str]) -> None:
-    """Refuse text of a serial monitor that put its time stamps before an arrow, with the command that fixes it."""
-    if sum(_SERIAL.match(line) is not None for line in lines) <= len(lines) / 2:
-        return
-    text = lines[-1].partition(" -> ")[2]
-    mark = next((mark for mark in (";", ",", "\t") if mark in text), " ").replace("\t", "\\t")
-    raise RecordingError(
-        f"{path.name}, row 1: a serial monitor wrote the time and an arrow before each row; make columns of them: "
-        f"sed -i 's/ -> /{mark}/' {shlex.quote(str(path))}"
-    )
 
 
 def _no_table(path: Path, skip_rows: int | None) -> str:
@@ -379,6 +368,8 @@ def _header(cell: str, number: int) -> Header:
 def _with_unit(header: Header, cell: str) -> Header:
     """Return a header with the unit of a cell below it; where its own is another one, with both, which is none."""
     unit, own = bare_unit(cell), header.unit
+    if own and is_unit(unit) and is_no_unit(own):
+        return Header(header.name, unit, header.text)  # X(Absolute)
     if own and unit and are_apart(own, unit):
         return Header(header.name, f"{own} or {unit}", header.text)
     return Header(header.name, own or unit or None, header.text)
