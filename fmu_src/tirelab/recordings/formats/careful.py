@@ -213,7 +213,7 @@ class RowReader:
                     f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
                     "the file is damaged there: export it anew"
                 )
-            plain = with_plain_marks(line)
+            plain = with_plain_marks(line if line.strip("\0\r\n") else line.replace("\0", ""))
             yield with_tabs(plain, len(self.layout.headers)) if self.layout.spaced else plain
 
     def _other_width(self, line: int, row: Sequence[str]) -> RecordingError:
@@ -281,17 +281,24 @@ class _Cells:
         raise not_a_number(self.path.name, f"row {line}", header, text)
 
     def _with_comma(self, text: str, line: int, header: str) -> float:
+        maybe = MAYBE_THOUSANDS.fullmatch(text) is not None
+        if maybe and not self.commas:
+            raise self._either(text, line, header)
         if not (self.commas and DECIMAL_COMMA.fullmatch(text)):
             raise not_a_number(self.path.name, f"row {line}", header, text)
         self.hold_to(",", line, header, text)
-        if not self.certain and not MAYBE_THOUSANDS.fullmatch(text):
+        if not self.certain and not maybe:
             self.certain = True
         elif not self.certain and self.doubtful is None:
-            self.doubtful = RecordingError(
-                f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} may have a decimal "
-                "comma or a thousands mark, and no number here tells which; write decimal points"
-            )
+            self.doubtful = self._either(text, line, header)
         return float(text.replace(",", "."))
+
+    def _either(self, text: str, line: int, header: str) -> RecordingError:
+        number = "" if self.commas else "is not a number where commas separate the columns: it "
+        return RecordingError(
+            f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} {number}may have a decimal "
+            "comma or a thousands mark, and no number here tells which; write decimal points"
+        )
 
     def hold_to(self, mark: str, line: int, header: str = "", text: str = "") -> None:
         """Note the decimal mark of the file; a second kind of mark is refused."""

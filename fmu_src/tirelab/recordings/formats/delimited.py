@@ -1,6 +1,7 @@
 """Text tables (CSV, TSV): by columns with polars when they are clean, row by row when they are not."""
 
 import io
+import re
 import warnings
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -16,7 +17,7 @@ from .clock import ClockError
 from .cut_short import cut_cell
 from .encoding import BY_BYTES, LOCAL
 from .layout import Layout, find_layout
-from .number_style import EXPONENTS, NumberStyle, with_plain_marks
+from .number_style import BYTE_ORDER_MARK, EXPONENTS, NumberStyle, with_plain_marks
 from .spaced import block_with_tabs
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, quoted
 
@@ -25,6 +26,10 @@ BLOCK = 2 * 2**20
 
 MINUS = "\N{MINUS SIGN}".encode()
 """The minus of typography, which some programs write before numbers."""
+
+
+ZEROS = re.compile(rb"^\x00+(?=\r?$)", re.MULTILINE)
+"""A line of zero bytes, as a card leaves them whose power was lost."""
 
 
 class DelimitedTable:
@@ -154,7 +159,9 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
                 reader.fault_from = 0
                 return False
             if codec == "utf-8":
-                block = block.replace(MINUS, b"-")
+                block = block.replace(MINUS, b"-").replace(BYTE_ORDER_MARK.encode(), b"")
+            if b"\0" in block:
+                block = ZEROS.sub(b"", block)
             if any(mark.encode() in block for mark in EXPONENTS):
                 block = with_plain_marks(block.decode(codec, "surrogateescape")).encode(
                     codec, "surrogateescape"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+import shlex
 from pathlib import Path
 
 from ..vocabulary import FOREIGN, plain
@@ -22,6 +23,8 @@ JUDGED = 16_384
 
 _TOGETHER = re.compile(rb"[\x80-\xff]{2}")
 """Two bytes beyond ASCII side by side, as nearly every Chinese letter has them; one alone is a western one (µm, °C)."""
+
+_CONTROL = re.compile(rb"[\x01-\x08\x0e-\x1a\x1c-\x1f]")
 
 LOCAL = {
     "gb18030": "GBK (GB 18030)",
@@ -46,7 +49,8 @@ def find_encoding(path: Path, raw: bytes, whole: bool) -> tuple[str, tuple[str, 
     for mark, name in BYTE_ORDER_MARKS:
         if raw.startswith(mark):
             return name, ()
-    if b"\x00" in raw:
+    text = raw.rstrip(b"\x00") if whole else raw
+    if b"\x00" in text or not text:
         return _without_mark(path, raw), ("read as UTF-16 without a byte order mark",)
     try:
         codecs.getincrementaldecoder("utf-8")().decode(raw, final=whole)
@@ -64,8 +68,16 @@ def _without_mark(path: Path, raw: bytes) -> str:
     for name, empty, filled in (("utf-16-le", raw[1::2], raw[::2]), ("utf-16-be", raw[::2], raw[1::2])):
         if empty.count(0) > 0.9 * len(empty) and b"\x00" not in filled:
             return name
+    if _CONTROL.search(raw) or not raw.strip(b"\x00"):
+        raise RecordingError(
+            f"{path.name} is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
+        )
+    row = raw[: raw.index(b"\x00")].count(b"\n") + 1
+    clean = path.with_name(f"{path.stem}.clean{path.suffix}")
     raise RecordingError(
-        f"{path.name} is not text (it holds zero bytes); export it as CSV, Parquet, .mat, MDF4 or TDMS"
+        f"{path.name}, row {row}: holds zero bytes, as a card leaves them whose power was lost; what is "
+        f"beside them may be cut: look at it, and leave them out: tr -d '\\000' < {shlex.quote(str(path))} > "
+        f"{shlex.quote(str(clean))}"
     )
 
 

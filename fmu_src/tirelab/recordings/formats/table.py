@@ -13,7 +13,12 @@ from ..origin import Origin
 
 FloatArray = NDArray[np.float64]
 
-BLANK_WORDS = frozenset({"", "nan", "-nan", "na", "n/a", "#n/a", "null", "none"})
+BLANK_WORDS = frozenset(
+    {
+        *("", "nan", "-nan", "na", "n/a", "n.a.", "#n/a", "null", "none", "--", "---"),
+        *("nan(ind)", "-nan(ind)", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan"),
+    }
+)
 """What a cell may hold, in lower case, to say that nothing was measured."""
 
 TRUTH_WORDS = frozenset({"true", "false"})
