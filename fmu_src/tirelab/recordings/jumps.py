@@ -88,7 +88,8 @@ def false_force_doubt(
     So does a cell that was overloaded, and a line that was cut within its number: 6 for 614.35.
     """
     with np.errstate(all="ignore"):
-        alone = np.setdiff1d(_alone(force), _alone(deflection))
+        alone, along = _alone(force), _alone(deflection)
+    alone = np.setdiff1d(alone, (along[:, None] + np.arange(1 - AROUND, AROUND)).ravel())
     if not alone.size:
         return ()
     at = int(alone[0])
