@@ -40,6 +40,23 @@ def likely_clock(time: FloatArray) -> str:
     return likely[-1] if likely else "s"
 
 
+def packed_clock(time: FloatArray) -> str:
+    """Return a sentence where numbers are hours, minutes and seconds in one, 140559.9 and 140600.0, "" where not."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(time)
+        turns = np.flatnonzero(
+            (time[:-1] % 100.0 >= 59.0) & (time[1:] % 100.0 < 1.0) & (steps > 40.0) & (steps < 42.0)
+        )
+        late = np.any((time % 100.0 >= 60.0) | (time % 10_000.0 >= 6000.0))
+        if not turns.size or late or turns.size < np.count_nonzero(steps > 40.0):
+            return ""
+    at = int(turns[0])
+    return (
+        f"the time goes from {plain(time[at], 9)} to {plain(time[at + 1], 9)}, and to no seconds from 60 on: if these "
+        "are hours, minutes and seconds in one number, write them as 14:05:59.9"
+    )
+
+
 def clock_doubt(origin: Origin, time: FloatArray, unit: str, size: float) -> str:
     """Return a sentence where times [s] read in a unit of that size [s] are those of no test, "" where they may be."""
     with np.errstate(over="ignore", invalid="ignore"):
@@ -49,7 +66,7 @@ def clock_doubt(origin: Origin, time: FloatArray, unit: str, size: float) -> str
     elif 0.0 < step < FINEST:
         said = f"the samples are {step:.3g} s apart"
     else:
-        return ""
+        return packed_clock(written)
     alike = [name for name, _ in CLOCKS if name == unit.lower() != unit]
     other = alike[0] if alike else likely_clock(written)
     factor = {**dict(CLOCKS), DAYS: DAY}[other] / size

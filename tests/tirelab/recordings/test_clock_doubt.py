@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tirelab.recordings.clock_doubt import clock_doubt, likely_clock
+from tirelab.recordings.clock_doubt import clock_doubt, likely_clock, packed_clock
 from tirelab.recordings.origin import Origin
 from tirelab.recordings.recording import read_recording
 
@@ -49,3 +49,24 @@ def test_the_column_of_a_file_is_named(tmp_path: Path) -> None:
     path.write_text("time [Ms],stroke [mm],load [N]\n" + "\n".join(rows) + "\n")
     found = read_recording(path, radius="flat").doubts
     assert found[0].startswith("column 'time [Ms]': the recording lasts 12.6 years; in ms they would be")
+
+
+def test_hours_minutes_and_seconds_in_one_number_are_doubted() -> None:
+    seconds = 14 * 3600 + 5 * 60 + 40 + 0.1 * SAMPLES
+    packed = seconds // 3600 * 10_000 + seconds % 3600 // 60 * 100 + seconds % 60
+    said = packed_clock(np.round(packed, 3))
+    assert said.startswith("the time goes from 140559.9 to 140600, and to no seconds from 60 on")
+    assert said in clock_doubt(Origin("a.csv"), np.round(packed, 3), "s", 1.0)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        140_540.0 + 0.1 * SAMPLES,
+        np.concatenate([59.0 + 0.1 * np.arange(10.0), 100.0 + 0.1 * np.arange(700.0)]),
+        np.concatenate([0.1 * np.arange(300.0), 100.0 + 0.1 * np.arange(300.0)]),
+    ],
+    ids=["goes on", "seconds from 60 on", "a pause"],
+)
+def test_seconds_are_no_packed_clock(time: np.ndarray) -> None:
+    assert packed_clock(time) == ""
