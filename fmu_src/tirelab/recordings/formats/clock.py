@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 _CLOCK = re.compile(
-    r"\s*(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]\s*)?\d{1,4}:\d{2}(?::\d{2})?(?:[.,]\d+|:\d{3})?\s*(?:[AaPp][Mm])?\s*"
+    r"\s*(?:\d{1,4}[-./](?:\d{1,2}|[A-Za-z]{3})[-./]\d{1,4}[T ]\s*)?"
+    r"\d{1,4}:\d{2}(?::\d{2})?(?:[.,]\d+|:\d{3})?\s*(?:[AaPp][Mm])?\s*"
     r"(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)?\s*"
 )
 _ZONE = r"\s*(?:Z|UTC|GMT|[+-]\d{2}(?::?\d{2})?)$"
@@ -20,7 +21,17 @@ _OFFSET = r"([+-])(\d{2})(?::?(\d{2}))?$"
 _MILLISECONDS = r"(:\d{2}:\d{2}):(\d{3})$"
 """11:10:00:771, as controllers of testing machines write milliseconds."""
 
-_DATES = ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%d.%m.%Y", "%d/%m/%Y", "%m/%d/%Y", "%d-%m-%Y", "%m-%d-%Y")
+_DATES = (
+    "%Y-%m-%d",
+    "%Y/%m/%d",
+    "%Y.%m.%d",
+    "%d.%m.%Y",
+    "%d/%m/%Y",
+    "%m/%d/%Y",
+    "%d-%m-%Y",
+    "%m-%d-%Y",
+    "%d-%b-%Y",
+)
 _TIMES = ("%H:%M:%S%.f", "%H:%M", "%I:%M:%S%.f %p", "%I:%M %p")
 _STAMPS = tuple(f"{date} {time}" for date in _DATES for time in _TIMES)
 _OF_DAY = ("%I:%M:%S%.f %p", "%I:%M %p")
@@ -69,7 +80,7 @@ class Clock:
         ).to_series()
         present = plain.is_not_null()
         ahead = _ahead(plain)
-        plain = plain.str.replace(_ZONE, "").str.replace("T", " ", literal=True)
+        plain = plain.str.replace(_ZONE, "").str.replace(r"(\d)T", "$1 ")
         plain = plain.str.replace(",", ".", literal=True).str.replace(r"\s+", " ")
         plain = plain.str.replace(_MILLISECONDS, "$1.$2")
         if not self.form:
@@ -143,7 +154,7 @@ def _instants(plain: pl.Series, form: str) -> pl.Series:
 
 def _words(form: str) -> str:
     """Return the order of a date as people write it: day.month.year."""
-    names = {"%Y": "year", "%m": "month", "%d": "day"}
+    names = {"%Y": "year", "%m": "month", "%b": "month", "%d": "day"}
     date = form.split(" ")[0]
     for code, name in names.items():
         date = date.replace(code, name)
