@@ -123,6 +123,9 @@ def asked(
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
     likely = guessed_units(sized, settings.part, _metres(headers, matches, settings))
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
+    for name in lacking.units:
+        if matches[name].index not in values:
+            table.read((Wanted(matches[name].index, name),))  # no numbers: no unit helps
     without_unit = [*lacking.units, *(n for n, i in guessed.items() if not unit_of_column(headers[i], n))]
     units = {name: likely.get(name, EXAMPLE_UNITS[name]) for name in without_unit}
     units |= {
@@ -338,6 +341,8 @@ def _guessed_columns(
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
     free = [i for i in free if not _is_index(headers, i, values[i])]
+    others = [i for i in free if headers[i].unit or not np.all(np.diff(values[i]) == 1.0)]
+    free = others if len(others) >= len(missing) else free  # what rises by ones counts the rows
     free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
     known = [len(values[i]) for i in taken if i in values]
     samples = known[0] if known else max((len(values[i]) for i in free), default=0)

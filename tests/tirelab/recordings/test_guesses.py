@@ -230,3 +230,20 @@ def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: P
     assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
     path = write_rows(tmp_path / "b.csv", "t [s],x [mm],v,load2b", t, x, v, 2.0 * x + 0.5 * v)
     assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
+
+
+def test_what_counts_the_rows_is_no_force(tmp_path: Path) -> None:
+    """As pandas writes its index into a file of HDF5, beside the block of values."""
+    time, deflection, force = loading()
+    path = write_rows(tmp_path / "a.csv", "axis1,b0,b1,b2", np.arange(time.size), time, deflection, force)
+    assert proposed(path)[:2] == ["--columns", "time=#2,deflection=#3,force=#4"]
+
+
+def test_a_time_that_is_no_number_is_refused_and_no_unit_of_it_asked_for(tmp_path: Path) -> None:
+    rows = [f"20250603T1405{i / 10:04.1f},{0.1 * i:.1f},{4.0 * i:.1f}" for i in range(100)]
+    (tmp_path / "a.csv").write_text("\n".join(["Time,Travel (mm),Load (N)", *rows]) + "\n")
+    with pytest.raises(
+        RecordingError, match=r"row 2, column 'Time': '20250603T140500.0' is not a number"
+    ) as caught:
+        understand(tmp_path / "a.csv", Choices(part=True))
+    assert not isinstance(caught.value, IncompleteRecording)
