@@ -29,6 +29,10 @@ class Refusal(click.ClickException):
     exit_code = 2
 
 
+UNKNOWN = "=NAME"
+"""What stands in advice where no column is likely."""
+
+
 def check_files(given: Iterable[Path]) -> None:
     """Raise TirelabError where a file or folder is not there: before anything is loaded that could read it."""
     for path in given:
@@ -60,7 +64,9 @@ def _sentence(ctx: click.Context, error: Exception) -> str:
     words = getattr(error, "words", None)
     if words is None:
         return str(error)
-    return f"{error}\nThe whole command, with guesses to check: {whole_command(ctx, words())}"
+    command = whole_command(ctx, words())
+    to_do = "NAME to replace and guesses to check" if UNKNOWN in command else "guesses to check"
+    return f"{error}\nThe whole command, with {to_do}: {command}"
 
 
 def whole_command(

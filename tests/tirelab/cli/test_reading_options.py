@@ -47,6 +47,12 @@ class TestCompare:
         ]
         assert run(*proposed[1:]).exit_code == 0
 
+    def test_what_has_to_be_replaced_is_said(self, tmp_path: Path) -> None:
+        rows = [f"{0.1 * i:.1f},{4.0 * i:.1f},{10 * i}" for i in range(100)]
+        (tmp_path / "a.csv").write_text("\n".join(["Time (s),Load (N),Encoder (counts)", *rows]) + "\n")
+        said = run("inspect", tmp_path / "a.csv", "--radius", "flat").stderr
+        assert "The whole command, with NAME to replace and guesses to check: tirelab inspect" in said
+
     def test_doubts_are_said(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         file = write_rows(tmp_path / "a.csv", "time [s],x [cm],F [N]", time, deflection, force / 1e3)
