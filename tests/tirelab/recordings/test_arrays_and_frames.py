@@ -293,6 +293,13 @@ class TestPandas:
             Recording.from_dataframe, frame, radius="flat"
         )
 
+    def test_a_unit_in_the_name_and_another_one_in_the_first_row_are_asked_about(self) -> None:
+        columns = {"Time [s]": ("s", TIME), "Stroke [cm]": ("cm", DEFLECTION_CM), "Load [kN]": ("N", FORCE)}
+        frame = pd.DataFrame({name: [unit, *map(str, values)] for name, (unit, values) in columns.items()})
+        assert "unknown unit 'kN or N' of force" in refused(Recording.from_dataframe, frame, radius="flat")
+        recording = Recording.from_dataframe(frame, radius="flat", units={"force": "N"})
+        np.testing.assert_allclose(recording.force, FORCE, rtol=1e-12)
+
     def test_names_with_a_level_of_units(self) -> None:
         frame = pd.DataFrame(np.stack([TIME, DEFLECTION_CM, FORCE, FORCE], axis=1))
         levels = [("Time", "s"), ("Stroke", "cm"), ("Load", "N"), ("Load", "raw")]

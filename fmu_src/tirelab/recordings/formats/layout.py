@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from ..units import are_apart, is_no_unit, is_unit, split_header
+from ..units import is_unit, split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
@@ -29,7 +29,7 @@ from .table import (
     with_cell_units,
     with_dates,
 )
-from .table_search import bare_unit, find_table, is_units, is_value, states_units
+from .table_search import find_table, is_units, is_value, states_units, unit_below
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
@@ -366,10 +366,5 @@ def _header(cell: str, number: int) -> Header:
 
 
 def _with_unit(header: Header, cell: str) -> Header:
-    """Return a header with the unit of a cell below it; where its own is another one, with both, which is none."""
-    unit, own = bare_unit(cell), header.unit
-    if own and is_unit(unit) and is_no_unit(own):
-        return Header(header.name, unit, header.text)  # X(Absolute)
-    if own and unit and are_apart(own, unit):
-        return Header(header.name, f"{own} or {unit}", header.text)
-    return Header(header.name, own or unit or None, header.text)
+    """Return a header with the unit of a cell below it."""
+    return Header(header.name, unit_below(header.unit, cell), header.text)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ..units import QUANTITIES, is_unit, measures, split_header
+from ..units import QUANTITIES, are_apart, is_no_unit, is_unit, measures, split_header
 from ..vocabulary import any_channel
 from .clock import is_clock
 from .number_style import style_of
@@ -142,6 +142,20 @@ def states_units(cells: Sequence[str]) -> bool:
     """
     units = [bare_unit(cell) for cell in cells if bare_unit(cell)]
     return is_units(cells) or sum(any(measures(unit, si) for unit in units) for si in QUANTITIES) > 1
+
+
+def unit_below(own: str | None, cell: str) -> str | None:
+    """Return the unit of a column whose name states one of its own, or none, and which has this cell below it.
+
+    Where the two are of one quantity and not of one size it is both, N or kN, which is none and is asked about. A
+    word in brackets is no unit: X(Absolute).
+    """
+    unit = bare_unit(cell)
+    if own and is_unit(unit) and is_no_unit(own):
+        return unit
+    if own and unit and are_apart(own, unit):
+        return f"{own} or {unit}"
+    return own or unit or None
 
 
 def bare_unit(cell: str) -> str:

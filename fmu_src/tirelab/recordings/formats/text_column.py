@@ -14,7 +14,7 @@ from .cell_units import column_unit, taken_from_cells
 from .clock import Clock, ClockError, is_clock
 from .number_style import style_of, with_plain_marks
 from .table import BLANK_WORDS, Header
-from .table_search import bare_unit, is_units
+from .table_search import is_units, unit_below
 
 FloatArray = NDArray[np.float64]
 
@@ -45,8 +45,7 @@ def headers_of_text(
     # a cell that is no text speaks against a row of units, an empty one does not
     if is_units(texts) and not any(cell is not None and not isinstance(cell, str) for cell in first):
         above = 1
-        units = [bare_unit(text) or None for text in texts]
-        found = [replace(h, unit=h.unit or unit) for h, unit in zip(found, units, strict=True)]
+        found = [replace(h, unit=unit_below(h.unit, text)) for h, text in zip(found, texts, strict=True)]
         notes.append("units taken from sample 1, below the names")
     heads = [_head(column, above) for column in columns]
     for index, cells in enumerate(heads):
