@@ -176,6 +176,30 @@ class RowReader:
                 return self.read(islice(lines, first - 1, max(first - 1, rows[1])), first)
             return self.read(islice(lines, first - 1, None), first)
 
+    def refuse_other_table(self, first: int, last: int) -> None:
+        """Refuse rows from one on, up to another, that stand in a table of other names or units than the first of the file."""
+        other = self.text_rows.other_table(self._numbered_rows(self.layout.lines_before_data, first - 1))
+        if other:
+            raise RecordingError(
+                f"{self.path.name}@{first}:{last}, row {first}: stands in a table of other names or units, which begins at row "
+                f"{other}; say so with --skip-rows {other - 1}"
+            )
+
+    def header_after(self, line: int) -> int:
+        """Return the row below a line in which the names of the columns are written again; 0 where they are not."""
+        rows = self._numbered_rows(line)
+        return next((number for number, row in rows if self.text_rows.is_header(row)), 0)
+
+    def _numbered_rows(self, above: int, last: int | None = None) -> Iterator[tuple[int, list[str]]]:
+        """Return the rows of the file below a line, up to the last one, with their numbers."""
+        with self.path.open(encoding=self.layout.encoding, errors="replace", newline="") as file:
+            lines = islice(self._bounded_lines(file), above, None if last is None else max(last, above))
+            for number, line in enumerate(lines, above + 1):
+                try:
+                    yield number, next(csv.reader([line.rstrip("\r\n")], delimiter=self.layout.separator), [])
+                except csv.Error:
+                    continue
+
     def later_style(self) -> NumberStyle | None:
         """Return how numbers are written where a row beyond the head of the file is the first to show it: 1,000.5.
 

@@ -20,6 +20,7 @@ from .layout import Layout, find_layout
 from .number_style import BYTE_ORDER_MARK, EXPONENTS, NumberStyle, with_plain_marks
 from .spaced import block_with_tabs
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, quoted
+from .text_rows import AnotherTable
 
 BLOCK = 2 * 2**20
 """How much of a file [B] is parsed at once: enough to keep every core busy, little beside the recording."""
@@ -55,6 +56,7 @@ class DelimitedTable:
 
     def read_rows(self, wanted: Sequence[Wanted], first: int, last: int) -> Columns:
         """The columns wanted of these rows of the file alone, whatever the others hold."""
+        RowReader(self.path, self.layout, wanted).refuse_other_table(first, last)
         self.rows = (first, last)
         try:
             return self.read(wanted)
@@ -63,7 +65,11 @@ class DelimitedTable:
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The columns wanted, block by block: by columns where that works, row by row where it does not."""
-        pieces, reader = self._pieces(wanted)
+        try:
+            pieces, reader = self._pieces(wanted)
+        except AnotherTable as other:
+            again = RowReader(self.path, self.layout, wanted).header_after(other.told[1])
+            raise AnotherTable(*other.told, again) from None
         notes = [*self.layout.notes, *(note for clock in reader.clocks.values() for note in clock.notes)]
         if reader.cells.decimal_mark() == ",":
             notes.append("commas read as decimal commas")

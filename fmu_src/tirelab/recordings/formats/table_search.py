@@ -77,13 +77,13 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     ends = [number for number, row in enumerate(texts) if row.cells[0].strip() == END_OF_HEADER]
     texts = texts[ends[-1] + 1 :] if ends else texts
     above = [row for row in texts if len(row.cells) == width]
-    header = max(reversed(above), key=lambda row: _named(row.cells), default=None)
-    named = _named(header.cells) if header is not None else 0
+    header = max(reversed(above), key=lambda row: named(row.cells), default=None)
+    most = named(header.cells) if header is not None else 0
     near = next(iter(_nearly_as_wide(texts, rows, first)), None)
-    if not named or (near is not None and _named(near.cells) >= named):
+    if not most or (near is not None and named(near.cells) >= most):
         header = near or header
     elif header is not None:
-        header = next(row for row in above if _named(row.cells) == _named(header.cells))
+        header = next(row for row in above if named(row.cells) == named(header.cells))
     if header is not None:
         return TablePlace(found, start + header.line)
     # without a header the numbers begin with the first row of that width, unless a run confirms a later one
@@ -106,7 +106,7 @@ def _nearly_as_wide(texts: Sequence[_Row], rows: Sequence[_Row], first: int) -> 
     trailed = not numbers.cells[-1].strip()
     fits = len(names) == width + 1 or (trailed and len(names) == width - 1)
     remarked = below.numeric and len(names) == len(below.cells) == width + 1
-    return [texts[-1]] if fits and (remarked or _named(names) > 1) else []
+    return [texts[-1]] if fits and (remarked or named(names) > 1) else []
 
 
 def is_value(cell: str) -> bool:
@@ -213,7 +213,7 @@ def _longest_run(rows: Sequence[_Row]) -> tuple[int, int]:
     return best, first
 
 
-def _named(cells: Sequence[str]) -> int:
+def named(cells: Sequence[str]) -> int:
     """Return how many cells name a channel or state a unit."""
     return sum(map(_names_something, cells))
 

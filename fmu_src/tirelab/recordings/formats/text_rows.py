@@ -8,11 +8,11 @@ was damaged. Anything else is refused as it was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
-from .table_search import bare_unit, is_value, states_units
+from .table_search import bare_unit, is_value, named, states_units
 
 MOST_ASIDE = 60
 """Most rows of text below the table, or between a block of it and its next header."""
@@ -40,6 +40,21 @@ def _mostly_digits(cell: str) -> bool:
     return 2 * sum(character.isdigit() for character in cell) >= len(cell)
 
 
+class AnotherTable(RecordingError):
+    """Another table that begins at a line; above: how the one above it is named.
+
+    again: the row further down in which the names of the first one stand again, 0 for none
+    """
+
+    def __init__(self, file: str, line: int, above: str, again: int = 0) -> None:
+        other = f"the one below row {again}" if again else "this one"
+        super().__init__(
+            f"{file}, row {line}: another table begins here; read the one above it, {above}, or "
+            f"{other}, --skip-rows {(again or line) - 1}"
+        )
+        self.told = file, line, above
+
+
 class TextRows:
     """Judges the rows of one file that cannot be read as numbers, in the order of the file."""
 
@@ -63,7 +78,7 @@ class TextRows:
         """Set a row aside, or raise the fault that was found in it."""
         cells = " ".join(row).split() if self.spaced else row
         filled = [cell.strip() for cell in cells if cell.strip().lower() not in BLANK_WORDS]
-        if self._is_header(row):
+        if self.is_header(row):
             self.repeated.append(str(line))
             self._aside.clear()
             self._after_header, self._another = True, 0
@@ -109,11 +124,7 @@ class TextRows:
         return self._another_table(names[-1]) if names else None
 
     def _another_table(self, line: int) -> RecordingError:
-        above = f"{self.file}@{self.begins}:{self._aside[0].line - 1}"
-        return RecordingError(
-            f"{self.file}, row {line}: another table begins here; read the one above it, {above}, or "
-            f"this one, --skip-rows {line - 1}"
-        )
+        return AnotherTable(self.file, line, f"{self.file}@{self.begins}:{self._aside[0].line - 1}")
 
     def notes(self) -> list[str]:
         """Return what was left out, at the end of the file."""
@@ -126,7 +137,22 @@ class TextRows:
             said.append(f"rows below the table left out: row {listed(list(map(str, self._aside)))}")
         return said
 
-    def _is_header(self, row: Sequence[str]) -> bool:
+    def other_table(self, rows: Iterable[tuple[int, Sequence[str]]]) -> int:
+        """Return the row that begins a table of other names or units than the first, the last of these rows being in
+        it; 0 where they are in a table of the same. rows: each with its number in the file
+        """
+        header = other = 0
+        for number, row in rows:
+            filled = [cell for cell in row if cell.strip().lower() not in BLANK_WORDS]
+            if self.is_header(row):
+                header, other = number, 0
+            elif len(filled) < 2 or any(map(is_value, filled)) or self._is_unit_row(row):
+                continue
+            elif states_units(row) or named(row) > 1:
+                other = other if 0 < other == number - 1 else header if 0 < header == number - 1 else number
+        return other
+
+    def is_header(self, row: Sequence[str]) -> bool:
         """Whether a row names the same columns in the same order."""
         texts = [" ".join(cell.split()) for cell in row]
         names = [header.text for header in self.headers]
