@@ -1,6 +1,7 @@
 """Text read row by row: slower than by columns, and exact about what stands where."""
 
 import csv
+import re
 from array import array
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -177,12 +178,12 @@ class RowReader:
             return self.read(islice(lines, first - 1, None), first)
 
     def refuse_other_table(self, first: int, last: int) -> None:
-        """Refuse rows from one on, up to another, that stand in a table of other names or units than the first of the file."""
+        """Refuse rows from one to another that stand in a table of other names or units than the first of the file."""
         other = self.text_rows.other_table(self._numbered_rows(self.layout.lines_before_data, first - 1))
         if other:
             raise RecordingError(
-                f"{self.path.name}@{first}:{last}, row {first}: stands in a table of other names or units, which begins at row "
-                f"{other}; say so with --skip-rows {other - 1}"
+                f"{self.path.name}@{first}:{last}, row {first}: stands in a table of other names or units, which begins "
+                f"at row {other}; say so with --skip-rows {other - 1}"
             )
 
     def header_after(self, line: int) -> int:
@@ -264,6 +265,11 @@ class RowReader:
 
 def not_a_time(origin: str, line: int, header: str, text: str) -> RecordingError:
     """The error for a text among clock times."""
+    if re.fullmatch(r"\d{1,3}:\d\d", text.strip()):
+        return RecordingError(
+            f"{origin}, row {line}, column {quoted(header)}: {quoted(text)} may be hours and minutes or minutes and "
+            f"seconds; write it with both, 00:{text.strip()} or {text.strip()}:00"
+        )
     return RecordingError(
         f"{origin}, row {line}, column {quoted(header)}: {quoted(text)} is not a time like those before it; "
         "correct it, or delete the row"

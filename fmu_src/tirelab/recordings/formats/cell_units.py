@@ -58,7 +58,8 @@ def taken_from_cells(units: Iterable[str]) -> str:
 def without_unit(cell: str, unit: str) -> str:
     """Return a cell without its unit; one that has none or another stays as it is, and is no number then."""
     text = cell.strip()
-    if text.lower() in BLANK_WORDS or not text.endswith(unit):
+    other = text[: -len(unit)][-1:].isalpha()  # kN, where the unit is N
+    if text.lower() in BLANK_WORDS or not text.endswith(unit) or other:
         return cell if text.lower() in BLANK_WORDS else f"{cell} (without {unit})"
     return text[: -len(unit)].rstrip()
 

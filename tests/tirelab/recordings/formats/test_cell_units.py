@@ -41,6 +41,12 @@ def test_a_cell_without_the_unit_of_its_column_is_refused(tmp_path: Path, cell: 
     assert "row 22, column 'Force'" in refusal(written(tmp_path / "a.csv", rows), radius="flat")
 
 
+def test_a_cell_in_a_larger_unit_is_told_as_it_is_written(tmp_path: Path) -> None:
+    rows = [[t, x, f"{i}.5 N"] for i, (t, x, _) in enumerate(ROWS)]
+    path = written(tmp_path / "a.csv", [*rows[:30], [*rows[30][:2], "0.03 kN"], *rows[31:]])
+    assert "'0.03 kN (without N)' is not a number" in refusal(path, radius="flat")
+
+
 def workbook(path: Path, rows: list[list[str]]) -> Path:
     book = pytest.importorskip("openpyxl").Workbook()
     for row in [["Press", "2"], ["Time", "Deflection", "Force"], *rows]:

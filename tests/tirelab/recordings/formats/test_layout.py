@@ -388,6 +388,14 @@ def test_the_settings_above_the_end_of_a_header_name_no_columns(tmp_path: Path) 
     assert found.force[-1] == 245.0
 
 
+def test_a_clock_of_two_parts_says_that_it_may_be_either(path: Path) -> None:
+    lines = "".join(f"00:{i:02d};{X[i]:.3f};{F[i]:.3f}\n" for i in range(60))
+    with pytest.raises(
+        RecordingError, match=r"'00:00' may be hours and minutes or minutes and seconds; write it with"
+    ):
+        read(path, "Time;Stroke [mm];Load [N]\n" + lines)
+
+
 def test_a_word_in_brackets_is_no_unit_beside_the_one_below(path: Path) -> None:
     found = read(path, "Time;X(Absolute);F\ns;mm;N\n" + rows())
     np.testing.assert_allclose(found.deflection, 1e-3 * X, atol=1e-6)
