@@ -182,8 +182,8 @@ class RowReader:
         other = self.text_rows.other_table(self._numbered_rows(self.layout.lines_before_data, first - 1))
         if other:
             raise RecordingError(
-                f"{self.path.name}@{first}:{last}, row {first}: stands in a table of other names or units, which begins "
-                f"at row {other}; say so with --skip-rows {other - 1}"
+                f"{self.path.name}@{first}:{last}, row {first}: stands in a table of other names or units, which "
+                f"begins at row {other}; say so with --skip-rows {other - 1}"
             )
 
     def header_after(self, line: int) -> int:
