@@ -79,6 +79,10 @@ def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> t
     return ((int(alone[0]), said),)
 
 
+STEP = 4.0
+"""A deflection that moves so many times as far as it usually does takes a step, and the force of a damper with it."""
+
+
 def false_force_doubt(
     deflection: NDArray[np.float64], force: NDArray[np.float64]
 ) -> tuple[tuple[int, str], ...]:
@@ -90,6 +94,9 @@ def false_force_doubt(
     with np.errstate(all="ignore"):
         alone, along = _alone(force), _alone(deflection)
     alone = np.setdiff1d(alone, (along[:, None] + np.arange(1 - AROUND, AROUND)).ravel())
+    moved = np.abs(np.diff(deflection, prepend=deflection[0], append=deflection[-1]))
+    near = np.clip(alone[:, None] + np.arange(-1, 3), 0, moved.size - 1)
+    alone = alone[np.max(moved[near], axis=1, initial=0.0) <= STEP * np.median(moved)]
     if not alone.size:
         return ()
     at = int(alone[0])

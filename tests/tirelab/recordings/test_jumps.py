@@ -378,6 +378,11 @@ def test_a_force_that_comes_a_sample_after_its_tap_is_none_that_was_read_falsely
     assert false_force_doubt(tapped, spoiled({301: 900.0})) == ()
 
 
+def test_the_force_of_a_damper_that_is_driven_in_steps_was_not_read_falsely() -> None:
+    stairs = 1e-3 * (np.arange(2000) // 100 % 10)
+    assert false_force_doubt(stairs, 100.0 * np.gradient(stairs) + 0.01 * np.sin(np.arange(2000.0))) == ()
+
+
 def test_a_line_that_was_cut_within_its_force_is_doubted(tmp_path: Path) -> None:
     """ESP32 and Arduino loggers lose the end of a line at a reset: 6 for 614.35."""
     rows = [f"{0.1 * i:.1f},{0.1 * i:.3f},{4.0 * i:.2f}" for i in range(200)]
