@@ -57,6 +57,8 @@ _TIMES = re.compile(
 )
 _FACTOR = re.compile(r"[\[(]?\s*(?:[x*/\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*\d|10(?:\^|\*\*|e)).*")
 """What stands behind a unit that is not that of the numbers: x10, *1000, (x10), /10, 10^3."""
+_SCALED = re.compile(r"(?P<name>.*\w)(?:\s+x|\s*[*\N{MULTIPLICATION SIGN}])\s*(?P<by>10+)")
+"""A name with a factor: Force x10."""
 _PART_OF_ONE = re.compile(r"(?P<value>)(?P<unit>[^\W\d]\w*)\s*/\s*(?P<by>[1-9]\d*)", re.ASCII)
 MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\](?P<more>.*)")
@@ -294,6 +296,8 @@ def _with_what_follows(name: str, unit: str, more: str) -> tuple[str, str | None
     """
     if _FACTOR.fullmatch(more):
         return name, f"{unit} {more}"
+    if scaled := _SCALED.fullmatch(name):
+        return scaled["name"], f"{unit} x{scaled['by']}"
     if more.startswith("/") or not is_measured(more):
         name = f"{name} {more}"
     return name, unit if unit.strip("-") else None
