@@ -159,24 +159,20 @@ def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[F
     """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
 
     A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of its span, or
-    of another `span` [m] that is longer; it counts from its turning point on. Where it first goes down by so much, it
-    has not been going up before.
+    of another `span` [m] that is longer; it counts from its turning point on. What first goes down has not gone up.
     """
     threshold = max(6.0 * noise, 0.02 * max(float(np.ptp(deflection)), span))
-    turns, sign, best, first = [0], 1.0, 0, 0
-    extreme = deflection[0]
     values = deflection.tolist()
+    turns, sign, best, extreme = [0], 1.0, 0, values[0]
     for i, x in enumerate(values):
         ahead = sign * (x - extreme)
         if ahead >= 0.0:
             best, extreme = i, x
         elif -ahead > threshold:
-            if sign > 0.0 and turns == [0] and extreme - deflection[0] <= threshold:
-                first = 1
-            else:
-                turns.append(best + 1)
+            turns.append(best + 1)
             sign, best, extreme = -sign, i, x
-    lengths = np.diff([*turns, deflection.size])
+    first = int(len(turns) > 1 and values[turns[1] - 1] - values[0] <= threshold)
+    lengths = np.diff([0, *turns[1 + first :], deflection.size])
     number = first + np.arange(lengths.size)
     direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
     cycle = np.repeat(np.floor(number / 2.0), lengths)
