@@ -321,7 +321,8 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
 
 
 def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:
-    """Return a set, or in its place the likeliest one with no more effects that leaves clearly less, repeatedly.
+    """Return a set, or in its place the likeliest one with no more effects that leaves clearly less, repeatedly. What
+    leaves more than no effect does is no correction, however little that is.
 
     With the noise-free deflection that other set must leave no more: an effect of the rate or the acceleration is not
     refuted by the noise of the reading, which it magnifies.
@@ -329,7 +330,7 @@ def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explan
     for other in likely:
         if len(other.effects) > len(chosen.effects) or other.error_left > chosen.error_left:
             continue
-        if other.error < NO_WORSE * chosen.error:
+        if other.error < (NO_WORSE if other.effects else 1.0) * chosen.error:
             return _leaving_least(other, likely)
     return chosen
 

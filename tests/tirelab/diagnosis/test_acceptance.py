@@ -196,8 +196,11 @@ def test_nothing_is_always_accepted() -> None:
     assert delivered(*wrong, made("", 15.0))[0].names == ()
 
 
-def test_what_is_worse_than_nothing_where_it_was_fitted_is_refused_however_unlikely_nothing_is() -> None:
-    worse = [made(name, 30.0, 500.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
+@pytest.mark.parametrize("left", [30.0, 15.2])
+def test_what_is_worse_than_nothing_where_it_was_fitted_is_refused_however_unlikely_nothing_is(
+    left: float,
+) -> None:
+    worse = [made(name, left, 500.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
     assert delivered(*worse, made("", 15.0))[0].names == ()
 
 
