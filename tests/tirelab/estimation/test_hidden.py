@@ -15,9 +15,8 @@ from tirelab.regressors.dataset import dataset_of
 from tirelab.regressors.signature import signatures_of
 
 SPRING = TireModel(PowerLaw(200.0, 1.0), tested_range=None, two_sided=True, inflated=False)
-CURVE = replace(
-    SPRING, law=PowerLaw(1e-12, 1.0), curve=PartCurve((0.0, 0.01, 0.02, 0.03), (0.0, 300.0, 350.0, 900.0))
-)
+SNAP = PartCurve((0.0, 0.01, 0.02, 0.03), (0.0, 300.0, 350.0, 900.0))
+CURVE = replace(SPRING, law=PowerLaw(1e-12, 1.0), curve=SNAP)
 GAP = replace(SPRING, two_sided=False, effects=((CATALOGUE["deflection_offset"], (1e-3,)),))
 ACTING = ("series_compliance", "deflection_offset", "force_offset", "viscous_damping")
 
@@ -27,7 +26,7 @@ def pressed(seed: int, force: float = 20.0) -> Recording:
     time = np.linspace(0.0, 40.0, 801)
     x = 0.015 * (1.0 - np.cos(2.0 * np.pi * time / 20.0))
     noise = np.random.default_rng(seed).normal(size=(2, time.size))
-    forces = np.interp(x, CURVE.curve.at, CURVE.curve.force) if CURVE.curve else x
+    forces = np.interp(x, SNAP.at, SNAP.force)
     return Recording("p", time, x + 1e-6 * noise[0], np.full(time.size, np.inf), forces + force + noise[1])
 
 
