@@ -402,39 +402,6 @@ def test_a_word_in_brackets_is_no_unit_beside_the_one_below(path: Path) -> None:
     np.testing.assert_allclose(found.force, F, atol=1e-3)
 
 
-def test_zero_bytes_at_the_end_of_a_file_are_left_out(path: Path) -> None:
-    text = "Time [s];Stroke [mm];Load [N]\n" + rows(comma=False)
-    assert len(read(path, text + "\0" * 4096)) == len(T)
-
-
-def test_a_line_of_zero_bytes_is_an_empty_one(path: Path) -> None:
-    text = "Time [s];Stroke [mm];Load [N]\n" + rows(comma=False)
-    late = "".join(f"{8.1 + 0.1 * i:.1f};0.000;0.000\n" for i in range(9000))
-    assert "skipped as empty: row 9083" in read(path, f"{text}{late}{chr(0) * 512}\n950;0.000;0.000\n").notes
-
-
-def test_zero_bytes_among_the_numbers_are_named_by_their_row(path: Path) -> None:
-    text = "Time [s];Stroke [mm];Load [N]\n" + rows(comma=False).replace("3.000;", "\0\0.000;", 1)
-    with pytest.raises(RecordingError, match=r"press\.csv, row 8: holds zero bytes.*tr -d '\\000' < "):
-        read(path, text)
-
-
-def test_byte_order_marks_of_files_that_were_joined_are_left_out(path: Path) -> None:
-    text = "\ufeffTime [s];Stroke [mm];Load [N]\n"
-    lines = rows(comma=False).splitlines(keepends=True)
-    found = read(path, "\ufeff" + text + "".join(lines[:40]) + text + "".join(lines[40:]))
-    assert len(found) == len(T)
-    assert "header written again, its rows read on: row 42" in found.notes
-
-
-@pytest.mark.parametrize("blank", ["--", "---", "n.a.", "-nan(ind)", "1.#QNAN"])
-def test_words_for_no_reading_cost_their_row(path: Path, blank: str) -> None:
-    text = "Time [s];Stroke [mm];Load [N]\n" + rows(comma=False) + f"8.1;0.000;{blank}\n"
-    found = read(path, text)
-    assert len(found) == len(T)
-    assert "skipped for want of force: row 83" in found.notes
-
-
 def test_a_unit_in_the_name_and_another_one_below_are_asked_about(path: Path) -> None:
     text = "Zeit [s];Stroke [mm];Load [N]\ns;mm;kN\n" + rows()
     with pytest.raises(
