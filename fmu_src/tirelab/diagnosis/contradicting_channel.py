@@ -69,6 +69,11 @@ class ContradictingChannel(Contradiction):
             f"{self.channel}=."
         )
 
+    @property
+    def most_sure(self) -> float:
+        """The largest confidence of a verdict beside it."""
+        return EITHER
+
     def no_surer(self, effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
         """Return the effects with the channel, those that are none without it at most as probable as either."""
         return tuple(

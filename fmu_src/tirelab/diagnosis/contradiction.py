@@ -17,6 +17,7 @@ from radialtire import TireModel
 from scipy.optimize import minimize_scalar
 
 from ..estimation.explanation import Explanation
+from ..estimation.findings import NamedEffect
 from ..preprocessing.data_checks import compared
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE
@@ -116,6 +117,15 @@ class Contradiction:
                 f"Look for what slipped, yielded, cracked or drifted between them, or diagnose {apart} apart."
             )
         return f"Check {self.suspects} of each, and what it had been through, or diagnose {apart} apart."
+
+    @property
+    def most_sure(self) -> float:
+        """The largest confidence of a verdict beside it."""
+        return 1.0
+
+    def no_surer(self, effects: Sequence[NamedEffect]) -> tuple[NamedEffect, ...]:
+        """Return the effects of that verdict, each at most as probable as it lets them be."""
+        return tuple(effects)
 
     @property
     def sentences(self) -> str:

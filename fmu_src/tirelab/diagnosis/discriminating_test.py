@@ -11,26 +11,32 @@ count as decisive whose difference a slightly wrong form causes as well.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..estimation.explanation import Explanation
 from ..estimation.findings import FittedModel
 from ..names import plain
 from ..planning.waveforms import WAVEFORMS, Limits, motion, sample_times
 from ..preprocessing.motion import FloatArray
+from ..preprocessing.samples import RawDataset
 from ..recordings.zero import millimetres
 from ..regressors.dataset import BLOCKS
 from ..report.titles import question
 from ..report.words import number
 from ..selection.search import beside_noise
 from ..simulation.simulate import simulate
+from .alternatives import USUAL_SPEED, Alternative
 
 DECISIVE = 5.7
 """Least distance S of a test worth driving: the log likelihood ratio of Gaussian hypotheses S apart has mean S^2/2
 and deviation S; from here S^2/2 - 1.645 S > ln 1000, odds of 1000 to 1 in nineteen of twenty such tests."""
 
+
+MOST_TESTED = 3
+"""Alternatives, likeliest first, for which a separating test is searched: each costs a fit."""
 
 INVISIBLE = 0.01
 """Distance of a sample, in units of the noise, below which the message gives no number."""
@@ -171,3 +177,37 @@ def _surface(radius: float) -> str:
     if not np.isfinite(radius):
         return "flat ground"
     return f"a {'convex' if radius > 0.0 else 'concave'} surface of radius {plain(100.0 * abs(radius), 4)} cm"
+
+
+def recommended(
+    explanation: Explanation, alternatives: Sequence[Alternative], noise: float, limits: Limits
+) -> DiscriminatingTest | None:
+    """Return the test that separates the likeliest alternative that a test can; else the one that comes nearest."""
+    nearest: DiscriminatingTest | None = None
+    for alternative in alternatives[:MOST_TESTED]:
+        model = explanation.alternative_model(alternative.names)
+        if model is None:
+            continue
+        test = discriminate(explanation.model, model, noise, limits)
+        if nearest is None or test.gain > nearest.gain:
+            nearest = test
+        if test.sufficient:
+            break
+    return nearest
+
+
+def limits_of_rig(samples: RawDataset, given: Limits | None, *, timed: bool, part: bool) -> Limits:
+    """Return the given limits, or those of a rig that drove these recordings, and can drive twice as fast.
+
+    timed: whether the times of all samples were measured
+    A tire is pressed from 0; a part moves from the least deflection that was recorded, which may be anywhere.
+    """
+    motions = [e.motion for e in samples.experiments]
+    start = min(float(m.deflection.min()) for m in motions) if part else 0.0
+    if given is not None:
+        return replace(given, start=start)
+    stroke = samples.max_deflection - start
+    if not timed:
+        return Limits(deepest=stroke, fastest=USUAL_SPEED, start=start)
+    fastest = 2.0 * max(float(np.abs(m.rate).max()) for m in motions)
+    return Limits(deepest=stroke, fastest=max(USUAL_SPEED, fastest), start=start)

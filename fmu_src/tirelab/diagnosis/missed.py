@@ -16,6 +16,7 @@ from ..preprocessing.noise import NEGLIGIBLE
 from ..preprocessing.samples import Recorded
 from ..regressors.dataset import dataset_of
 from ..report.titles import newtons, set_title
+from .confidence import EITHER
 from .contradiction import BEYOND_NOISE, EXPLAINED, Contradiction, Driven
 
 
@@ -54,6 +55,11 @@ class Missed(Contradiction):
         """What to do about it, as a sentence."""
         doubt = f"If nothing explains them, check {self.suspects} of each."
         return f"Fit {self.names[0]} too: diagnose them together. {doubt}"
+
+    @property
+    def most_sure(self) -> float:
+        """The largest confidence of a verdict beside it."""
+        return EITHER
 
 
 def missed_held_out(

@@ -315,3 +315,17 @@ def _turns(stays: Sequence[FloatArray]) -> bool:
         return False
     beside = max(left - bent**2 / straight, 1e-12 * left) / max(freedom - 1.0, 1.0)
     return bool(t.cdf(bent / np.sqrt(straight * beside), max(freedom - 1.0, 1.0)) < FOLLOWED)
+
+
+def copies_held_out(fitted: Sequence[Recorded], held_out: Sequence[Recorded]) -> list[str]:
+    """Return a sentence on each held-out recording that is one of the fitted ones."""
+    told = []
+    for kept in held_out:
+        own = kept.time, kept.deflection, kept.force
+        same = (r for r in fitted if all(map(np.array_equal, own, (r.time, r.deflection, r.force))))
+        if (copied := next(same, None)) is not None:
+            told.append(
+                f"Held-out {kept.name} has the readings of {copied.name}, which is fitted: it tests nothing; hold out "
+                "another recording."
+            )
+    return told

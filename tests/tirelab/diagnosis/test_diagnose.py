@@ -11,11 +11,7 @@ from radialtire import CATALOGUE, PowerLaw, TireModel
 from rivals import rivals
 from scipy.signal import butter, lfilter
 from tirelab.diagnosis.confidence import of_confounded, probability, sharing_odds
-from tirelab.diagnosis.diagnose import PoorRecording, _Data, _limits_of, catalogue_names, diagnose
-from tirelab.diagnosis.localization import Span
-from tirelab.planning.waveforms import Limits
-from tirelab.preprocessing.samples import raw_dataset_of
-from tirelab.recordings.recording import Recording
+from tirelab.diagnosis.diagnose import PoorRecording, catalogue_names, diagnose
 from tirelab.simulation.simulate import simulate
 
 
@@ -264,20 +260,6 @@ def test_slow_noise_beside_a_hum_is_no_drift(seed):
     assert not verdict.unexplained_by
 
 
-def test_the_next_test_of_a_part_stays_where_it_was_recorded() -> None:
-    """A spring read between 10 and 12 mm on a gauge of its own; of a tire the next test begins at 0."""
-    time = np.arange(0.0, 20.0, 0.01)
-    spring = TireModel(law=PowerLaw(100.0, 1.0), two_sided=True)
-    x = 0.011 + 0.001 * np.sin(time)
-    recordings = [read("spring", time, x, 1e4 * x, 1)]
-    data = _Data(recordings, raw_dataset_of(recordings, spring), [])
-    limits = _limits_of(data, None, part=True)
-    assert (limits.start, limits.deepest) == pytest.approx((0.010, 0.002), abs=1e-5)
-    assert _limits_of(data, Limits(deepest=0.03), part=True).start == limits.start
-    assert _limits_of(data, None, part=False).start == 0.0
-    assert _limits_of(data, None, part=False).deepest == pytest.approx(0.012, rel=1e-3)
-
-
 def test_a_key_that_snaps_is_corrected_beside_a_law_that_is_far_from_it():
     """Before any set is fitted all of the misfit passes for slow noise; a law begun beside that stayed where it was."""
     way = np.arange(0.0, 3.5e-3, 0.02e-3)
@@ -304,18 +286,3 @@ def test_a_mass_at_one_frequency_is_not_told_from_a_softer_law():
     assert verdict.confidence < 0.5
     others = [set(a.names) for a in verdict.alternatives if a.probability > 0.1]
     assert any(other in either for other in others)
-
-
-@pytest.mark.parametrize("triangle", [True, False])
-def test_the_acceleration_of_a_drive_at_one_rate_is_no_place(triangle: bool) -> None:
-    """Five decimals of a millimetre; what smoothing leaves of them between the turns is no acceleration."""
-    time = 0.01 * np.arange(6000)
-    phase = time / 20.0 % 1.0
-    x = 0.02 * (1.0 - np.abs(2.0 * phase - 1.0)) if triangle else 0.01 * (1.0 - np.cos(2.0 * np.pi * phase))
-    recording = Recording("press", time, np.round(x, 8), np.full(time.size, np.inf), 1e5 * x)
-    data = _Data([recording], raw_dataset_of([recording], TireModel()), [])
-    assert ("acceleration" in data.unknown) is triangle
-    places = [
-        Span(by, 0.0, 1.0, "", "", None, 1.0, 1.0, 0.0, 1.0, 0.0, 1.0) for by in ("rate", "acceleration")
-    ]
-    assert [place.by for place in data.shown(places)] == ["rate", "acceleration"][: 2 - triangle]

@@ -4,11 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from drives import read
 from fits import model_of
 from radialtire import PowerLaw, TireModel
 from scipy.stats import norm
-from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate, expected_gain
+from tirelab.diagnosis.alternatives import USUAL_SPEED
+from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate, expected_gain, limits_of_rig
 from tirelab.planning.waveforms import Limits
+from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.selection.search import EFFECTIVE
 
 SLIPPING = {"rate_independent_hysteresis": {"slip_force": 30.0, "reach": 1e-3}}
@@ -137,3 +140,27 @@ def test_one_effect_more_is_decided_by_what_the_smaller_set_cannot_follow() -> N
 def test_it_is_driven_on_a_recorded_surface_that_can_be_mounted():
     limits = Limits(deepest=0.02, fastest=0.1, longest=60.0, surfaces=(-0.381, 0.254))
     assert set(discriminate(viscous(), friction(-0.381), 6.0, limits).test.surface_radius) == {-0.381}
+
+
+def test_the_next_test_of_a_part_stays_where_it_was_recorded() -> None:
+    """A spring read between 10 and 12 mm on a gauge of its own; of a tire the next test begins at 0."""
+    time = np.arange(0.0, 20.0, 0.01)
+    spring = TireModel(law=PowerLaw(100.0, 1.0), two_sided=True)
+    x = 0.011 + 0.001 * np.sin(time)
+    recordings = [read("spring", time, x, 1e4 * x, 1)]
+    samples = raw_dataset_of(recordings, spring)
+    limits = limits_of_rig(samples, None, timed=True, part=True)
+    assert (limits.start, limits.deepest) == pytest.approx((0.010, 0.002), abs=1e-5)
+    assert limits_of_rig(samples, Limits(deepest=0.03), timed=True, part=True).start == limits.start
+    assert limits_of_rig(samples, None, timed=True, part=False).start == 0.0
+    assert limits_of_rig(samples, None, timed=True, part=False).deepest == pytest.approx(0.012, rel=1e-3)
+
+
+def test_a_rig_that_drove_a_motion_can_drive_it_twice_as_fast() -> None:
+    """0.5 m/s at most; samples without measured times say nothing of it."""
+    time = np.arange(0.0, 20.0, 0.01)
+    x = 0.010 * (1.0 - np.cos(50.0 * time))
+    recordings = [read("press", time, x, 1e4 * x, 1)]
+    samples = raw_dataset_of(recordings, TireModel())
+    assert limits_of_rig(samples, None, timed=True, part=False).fastest == pytest.approx(1.0, rel=0.02)
+    assert limits_of_rig(samples, None, timed=False, part=False).fastest == USUAL_SPEED
