@@ -55,6 +55,12 @@ def begun(sampled: Sampled) -> tuple[Sampled, int]:
 
 def channel_rows(measured: Mapping[str, FloatArray], samples: int) -> tuple[FloatArray, ...]:
     """Return every one of CHANNELS (samples,), NOT_MEASURED where it was not recorded."""
-    # Copies: a recording's arrays are read-only, which is another type to the compiled loops.
     nothing = np.full(samples, NOT_MEASURED)
-    return tuple(np.array(measured.get(channel.name, nothing), dtype=np.float64) for channel in CHANNELS)
+    return tuple(writable(measured.get(channel.name, nothing)) for channel in CHANNELS)
+
+
+def writable(values: FloatArray) -> FloatArray:
+    """Return values as an array that may be written to: one that may not, as those of a recording, is another type, for
+    which each loop would be compiled once more.
+    """
+    return np.require(values, np.float64, ["C", "W"])

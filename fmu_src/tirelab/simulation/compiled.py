@@ -20,7 +20,7 @@ import radialtire
 
 from .cache_folder import keep, private_folder
 
-KERNEL = Path(__file__).with_name("kernel.py")
+KERNEL, INSTANTS = (Path(__file__).with_name(name) for name in ("kernel.py", "instants.py"))
 
 
 @cache
@@ -35,7 +35,7 @@ def loop(name: str, key: str, function: Callable[..., Any] | None = None) -> Cal
     if function is not None:
         module.__dict__["respond"] = function
     bare: FunctionType = getattr(module, name)
-    module.__dict__.update(_compiled_globals(bare, numba.njit(error_model="numpy")))
+    module.__dict__.update(_compiled_globals(bare))
     compiled: Callable[..., Any] = numba.njit(cache=kept, nogil=True, error_model="numpy")(bare)
     return compiled
 
@@ -48,15 +48,20 @@ def names_read(function: FunctionType) -> frozenset[str]:
     return frozenset(names).union(*(names_read(f) for f in called if isinstance(f, FunctionType)))
 
 
-def _compiled_globals(function: FunctionType, compile_one: Callable[..., Any]) -> dict[str, Any]:
+def _compiled_globals(function: FunctionType) -> dict[str, Any]:
     """Return the functions of `radialtire` that `function` calls by their names, compiled with those they call."""
-    found: dict[str, Any] = {}
-    for name in function.__code__.co_names:
-        called = function.__globals__.get(name)
-        if isinstance(called, FunctionType):
-            scope = {**called.__globals__, **_compiled_globals(called, compile_one)}
-            found[name] = compile_one(FunctionType(called.__code__, scope, called.__name__))
-    return found
+    called = ((name, function.__globals__.get(name)) for name in function.__code__.co_names)
+    return {name: _compiled(one) for name, one in called if isinstance(one, FunctionType)}
+
+
+@cache
+def _compiled(function: FunctionType) -> Any:
+    """Return a function compiled, once for all that call it."""
+    import numba
+
+    scope = {**function.__globals__, **_compiled_globals(function)}
+    bare = FunctionType(function.__code__, scope, function.__name__)
+    return numba.njit(error_model="numpy")(bare)
 
 
 def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
@@ -77,8 +82,8 @@ def _copy_of_kernel(key: str) -> tuple[ModuleType, bool]:
 
 @cache
 def _fingerprint() -> str:
-    """Return a short name for the content of `radialtire` and the kernel."""
-    content = hashlib.sha256(KERNEL.read_bytes())
+    """Return a short name for the content of `radialtire`, the kernel and what it calls."""
+    content = hashlib.sha256(KERNEL.read_bytes() + INSTANTS.read_bytes())
     for path in sorted(Path(radialtire.__file__).parent.rglob("*.py")):
         content.update(path.read_bytes())
     return content.hexdigest()[:16]

@@ -13,44 +13,14 @@ from radialtire.power_law import force as elastic_force
 from radialtire.power_law import two_sided as held_force
 from radialtire.tracking import acceleration, begin, follow, rate
 
+from tirelab.simulation.instants import instant
+
 FloatArray = NDArray[np.float64]
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Stand for the response of an effect, which `compiled` puts in this place."""
     return signal, state
-
-
-def instant(history: tuple[FloatArray, ...], i: int, part: tuple[bool, FloatArray]) -> Instant:
-    """Return what an effect may use at sample `i`; history and part as in `respond_loop`."""
-    (
-        time,
-        deflection,
-        rates,
-        accelerations,
-        coefficient,
-        exponent,
-        elastic,
-        curvature,
-        pressure,
-        temperature,
-    ) = history
-    return Instant(
-        time[i] - time[0],
-        time[i] - time[max(i - 1, 0)],
-        i == 0,
-        deflection[i],
-        rates[i],
-        accelerations[i],
-        coefficient[i],
-        exponent[i],
-        elastic[i],
-        curvature[i],
-        pressure[i],
-        temperature[i],
-        part[0],
-        part[1][i],
-    )
 
 
 def respond_loop(

@@ -25,7 +25,7 @@ from radialtire.part_curve import PartCurve
 from radialtire.tracking import EXACT
 
 from . import compiled
-from .channels import Sampled, begun, channel_rows, measured_of
+from .channels import Sampled, begun, channel_rows, measured_of, writable
 
 FloatArray = NDArray[np.float64]
 T = TypeVar("T")
@@ -301,10 +301,14 @@ def downstream(
 
 def history_of(tire: TireModel, recording: Sampled, kinematics: Kinematics | None = None) -> History:
     """Return the quantities for the first effects at every sample of a recording."""
-    time, deflection, surface_radius = recording.time, recording.deflection, recording.surface_radius
+    time, deflection, surface_radius = (
+        writable(recording.time),
+        writable(recording.deflection),
+        recording.surface_radius,
+    )
     rate = acceleration = np.zeros_like(deflection)
     if kinematics is not None:
-        rate, acceleration = kinematics.rate, kinematics.acceleration
+        rate, acceleration = writable(kinematics.rate), writable(kinematics.acceleration)
     elif tire.differentiates:
         rate, acceleration = track(time, deflection, tire.reading_noise)
     A, B = coefficients(tire.law, surface_radius)

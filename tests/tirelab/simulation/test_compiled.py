@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from radialtire import CATALOGUE
+from radialtire import CATALOGUE, TireModel
 from tirelab.simulation import compiled
+from tirelab.simulation.simulate import SmoothedMotion, simulate
 
 
 @pytest.fixture
@@ -62,6 +63,34 @@ def test_two_effects_do_not_share_a_loop() -> None:
     # F + F0, and F + d t with t = 0 s and 2 s
     assert answers[0].tolist() == [105.0, 105.0]
     assert answers[1].tolist() == [100.0, 110.0]
+
+
+def test_what_loops_call_is_compiled_once_for_all_of_them() -> None:
+    effect = CATALOGUE["viscous_damping"]
+    loops = [compiled.loop(name, effect.name, effect.respond) for name in ("respond_loop", "beside_loop")]
+    one, other = ({n: g[n] for n in ("instant", "respond")} for g in (f.py_func.__globals__ for f in loops))
+    assert one == other
+
+
+@pytest.mark.parametrize("names", [["deflection_lag", "viscous_damping"], ["series_compliance"]])
+def test_an_array_that_may_not_be_written_to_is_no_other_type(store: Path, names: list[str]) -> None:
+    """A recording's arrays may not be; those of blocks may. Each type would be compiled once more."""
+    tire = TireModel(
+        effects=tuple((CATALOGUE[n], tuple(p.start for p in CATALOGUE[n].parameters)) for n in names)
+    )
+    time = 0.01 * np.arange(50)
+    arrays = [time, 0.01 * (1.0 - np.cos(time)), np.full(50, np.inf), np.sin(time), np.cos(time)]
+    for writable in (True, False):
+        own = [values.copy() for values in arrays]
+        for values in own:
+            values.setflags(write=writable)
+        motion = SmoothedMotion(*own)
+        simulate(tire, motion, motion)
+        simulate(tire, motion)
+    loops = [compiled.loop("respond_loop", n, CATALOGUE[n].respond) for n in names]
+    assert [len(loop.signatures) for loop in (*loops, compiled.loop("elastic_loop", "law"))] == [1] * (
+        len(names) + 1
+    )
 
 
 def test_the_store_is_named_after_the_content_of_the_physics(
