@@ -52,6 +52,7 @@ def test_without_strength_nothing_stays(form: SpringBack) -> None:
     assert pressed(form)[1] == pytest.approx(500.0 * (100.0 * pressed(form)[0]) ** 1.4, rel=1e-6, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_set_is_hidden_alone_and_beside_others_and_never_by_the_other_kinds() -> None:
     trials: list[Trial] = [draw(seed, kind="set") for seed in range(300, 310)]
     assert {len(t.answer.right[0]) for t in trials} == {1, 2}

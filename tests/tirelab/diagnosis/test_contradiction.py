@@ -74,7 +74,7 @@ def test_a_force_with_another_zero_is_told() -> None:
     )
 
 
-@pytest.mark.parametrize("damping", [0.0, 1e4])
+@pytest.mark.parametrize("damping", [0.0, pytest.param(1e4, marks=pytest.mark.slow)])
 def test_the_one_with_another_zero_is_named_and_what_explains_the_others(damping: float) -> None:
     """None of the sets that explain all of them need explain the others: the baseline does, or damping alone."""
     own = {"damping": damping}

@@ -41,7 +41,7 @@ def test_the_corrected_tire_has_a_name_of_its_own(alike_verdict):
     assert alike_verdict.tire.source.endswith("corrected by tirelab diagnose with ride 1, ride 2")
 
 
-@pytest.mark.parametrize("zero", [0.0, -100.0])
+@pytest.mark.parametrize("zero", [0.0, pytest.param(-100.0, marks=pytest.mark.slow)])
 def test_a_ceiling_above_the_largest_force_of_the_baseline_is_found(zero):
     # A tire stiffer by a quarter: its ceiling of 1900 N lies above the baseline's largest force of 1689 N.
     time, deflection, _ = ride(9)
@@ -82,7 +82,7 @@ def test_a_ripple_over_the_deflection_is_unknown_and_repeats(rippled_verdict):
     assert correction.held_out_after < 8.0
 
 
-@pytest.mark.parametrize("softness", [5e-4, 1e-3])
+@pytest.mark.parametrize("softness", [5e-4, pytest.param(1e-3, marks=pytest.mark.slow)])
 def test_a_rim_that_is_met_softly_is_found(softness):
     time, deflection, _ = ride(7)
     tire = TireModel(effects=((CATALOGUE["bottoming"], (3e5, 0.7 * float(deflection.max()), softness, 1.0)),))
@@ -91,7 +91,7 @@ def test_a_rim_that_is_met_softly_is_found(softness):
     assert diagnose(recording, catalogue=rivals("bottoming")).names == ("bottoming",)
 
 
-@pytest.mark.parametrize("damping", [0.0, 500.0])
+@pytest.mark.parametrize("damping", [0.0, pytest.param(500.0, marks=pytest.mark.slow)])
 def test_noise_that_a_filter_has_smoothed_is_nothing_unknown(damping):
     """Samples of 1 ms through a second-order filter of 50 Hz: neighbours err alike, over a part of the motion."""
     time, deflection, rate = ride(3, samples=4000, step=0.001)
@@ -103,6 +103,7 @@ def test_noise_that_a_filter_has_smoothed_is_nothing_unknown(damping):
     assert verdict.fit.noise == pytest.approx(5.0, rel=0.25)
 
 
+@pytest.mark.slow
 def test_what_shows_in_quiet_holds_is_found_beside_loud_motion():
     """Relaxation of 4 N under 1 N of noise in holds; in a tenth of the samples the machine moves, under 30 N."""
     time = np.arange(0.0, 400.0, 0.1)
@@ -118,6 +119,7 @@ def test_what_shows_in_quiet_holds_is_found_beside_loud_motion():
     assert verdict.fit.noise == pytest.approx(np.sqrt(np.mean(noise**2)), rel=0.1)
 
 
+@pytest.mark.slow
 def test_steps_that_are_held_one_recording_each_show_relaxation():
     """As a relaxation test is made: to four depths at once, there for a minute, and a file for each."""
     time = np.arange(0.0, 60.0, 0.05)
@@ -217,7 +219,7 @@ POOR = {
 def test_a_poor_recording_is_refused_in_a_sentence(case):
     time, deflection, force, said = POOR[case]
     with pytest.raises(PoorRecording, match=said):
-        diagnose([poor(time, deflection, force)])
+        diagnose([poor(time, deflection, force)], catalogue=["viscous_damping"])
 
 
 def test_an_unknown_name_in_the_catalogue_is_an_error():
@@ -246,7 +248,7 @@ def read_csv(path: Path) -> Drive:
     return Drive(path.name, values[:, 0], values[:, 1] / 100.0, values[:, 2] / 100.0, values[:, 3])
 
 
-@pytest.mark.parametrize("seed", [1, 3])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 3])
 def test_slow_noise_beside_a_hum_is_no_drift(seed):
     """First-order noise of 2 s and the mains, whose differences look like white noise of more than all there is."""
     numbers = np.random.default_rng([3, seed])
@@ -260,6 +262,7 @@ def test_slow_noise_beside_a_hum_is_no_drift(seed):
     assert not verdict.unexplained_by
 
 
+@pytest.mark.slow
 def test_a_key_that_snaps_is_corrected_beside_a_law_that_is_far_from_it():
     """Before any set is fitted all of the misfit passes for slow noise; a law begun beside that stayed where it was."""
     way = np.arange(0.0, 3.5e-3, 0.02e-3)
@@ -274,6 +277,7 @@ def test_a_key_that_snaps_is_corrected_beside_a_law_that_is_far_from_it():
     assert verdict.fit.after < 0.4 * verdict.fit.before
 
 
+@pytest.mark.slow
 def test_a_mass_at_one_frequency_is_not_told_from_a_softer_law():
     """12 Hz: the acceleration is -(24 pi)^2 times the deflection about its middle, a straight line of it."""
     time = np.arange(0.0, 2.5, 0.002)

@@ -115,6 +115,7 @@ def test_an_offset_before_a_spring_with_play_is_found_with_the_spring(
     assert "The simulation itself was given the deflection after the deflection offset" in found.summary
 
 
+@pytest.mark.slow
 def test_friction_beside_an_offset_before_it_are_both_found(monkeypatch: pytest.MonkeyPatch) -> None:
     _, x = motion()
     believed = beside(recorded(x, x + 4e-4, play, rubbed(x)), play, monkeypatch)
@@ -192,6 +193,7 @@ def test_the_share_of_a_remainder_is_that_of_the_whole_misfit() -> None:
     assert Before().of_the_whole(remainder, 4.0) is remainder
 
 
+@pytest.mark.slow
 def test_the_corrected_simulation_of_an_fmu_with_play_runs_as_stated(tmp_path: Path) -> None:
     """The FMU of pythonfmu from the command line: the correction moves its deflection."""
     spec = importlib.util.spec_from_file_location("foreign_models", FOREIGN_MODELS)

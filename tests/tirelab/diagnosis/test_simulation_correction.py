@@ -103,6 +103,7 @@ def late(seed: int) -> Recording:
     return Recording("late", time, read, flat, simulated(x) + noise, believed_force=simulated(read))
 
 
+@pytest.mark.slow
 def test_a_verdict_beside_a_simulation_that_no_law_stands_for_says_what_it_could_not_try() -> None:
     found = believed_of([late(1)], [])
     assert found is not None

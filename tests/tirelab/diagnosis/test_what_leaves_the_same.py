@@ -48,6 +48,7 @@ def stated(verdict: Verdict) -> dict[frozenset[str], float]:
     return {frozenset(verdict.names): verdict.confidence, **others}
 
 
+@pytest.mark.slow
 def test_a_damper_and_a_late_gauge_beside_a_linear_spring() -> None:
     sines = [sine(f, (0.0, 200.0, 0.0), i) for i, f in enumerate((0.5, 1.0, 3.0))]
     verdict = diagnose(sines, SPRING, catalogue=FEW)
@@ -81,6 +82,7 @@ def test_whatever_makes_a_linear_spring_softer_at_one_frequency(
     assert sum(each) > 0.7
 
 
+@pytest.mark.slow
 def test_of_two_sets_that_leave_the_same_each_is_fitted_with_what_else_is_there() -> None:
     """A softer spring beside a damper: of the four sets of two effects that are one force, three at least."""
     sines = [sine(f, (-2000.0, 200.0, 0.0), i) for i, f in enumerate((0.5, 1.0, 3.0))]

@@ -35,6 +35,7 @@ def strip(zero: float) -> Verdict:
     return diagnose([read], law, catalogue=["recalibration", *NAMES])
 
 
+@pytest.mark.slow
 def test_another_zero_changes_neither_names_nor_errors() -> None:
     zeroed, far_off = strip(0.0), strip(-60.0)
     assert zeroed.names == far_off.names

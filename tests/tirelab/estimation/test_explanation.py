@@ -109,7 +109,14 @@ def test_a_deflection_is_taken_as_exact_where_that_leaves_less(gauge: float, exa
     assert (left[0] < left[1]) == exact
 
 
-@pytest.mark.parametrize(("force", "length", "time"), [(1e4, 1.0, 1.0), (1.0, 0.01, 1.0), (1.0, 8.0, 30.0)])
+@pytest.mark.parametrize(
+    ("force", "length", "time"),
+    [
+        pytest.param(1e4, 1.0, 1.0, marks=pytest.mark.slow),
+        (1.0, 0.01, 1.0),
+        pytest.param(1.0, 8.0, 30.0, marks=pytest.mark.slow),
+    ],
+)
 def test_the_scale_of_a_recording_changes_nothing(
     found: Explanation, force: float, length: float, time: float
 ) -> None:

@@ -31,12 +31,14 @@ def ride(name: str, seed: int, ripple: float = 0.0) -> Recording:
     return Recording(name, time, read, np.full(8000, np.inf), force)
 
 
+@pytest.mark.slow
 def test_the_noise_behind_a_filter_is_no_physics() -> None:
     verdict = diagnose([ride("one", 1), ride("other", 2)], TireModel())
     assert verdict.names == ("viscous_damping",)
     assert verdict.fit.noise == pytest.approx(LEVEL, rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_ripple_as_large_beside_it_stays_something_unknown() -> None:
     verdict = diagnose(
         [ride("one", 1, ripple=2.0 * LEVEL), ride("other", 2, ripple=2.0 * LEVEL)], TireModel()

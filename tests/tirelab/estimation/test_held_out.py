@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from drives import flat_force
 from radialtire import PowerLaw, TireModel
 from tirelab.diagnosis.diagnose import diagnose
@@ -44,6 +45,7 @@ def test_a_surface_has_its_own_deflections_if_it_is_fitted() -> None:
     assert counted(pressed("other", 0.0, 0.020, radius=-0.3, seed=2), flat, drum) > 0.0198
 
 
+@pytest.mark.slow
 def test_a_law_that_goes_on_as_it_was_is_no_relaxation() -> None:
     """A part whose spring softens, pulled once at one speed, and held out farther: its force is that of the deflection.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from drives import flat_force
 from radialtire import TireModel
 from tirelab.diagnosis.diagnose import diagnose
@@ -34,6 +35,7 @@ def test_a_lag_beside_a_wandering_zero_is_named_and_the_zero_stays_a_remainder()
     assert found.remainder.unexplained
 
 
+@pytest.mark.slow
 def test_a_verdict_names_the_lag_though_neither_its_filter_nor_its_delay_is_known_alone() -> None:
     verdict = diagnose([late("slow", 0.2, 1), late("fast", 0.5, 2)], TireModel())
     assert [effect.name for effect in verdict.effects] == ["force_lag"]

@@ -238,6 +238,7 @@ def shifter(tmp_path: Path) -> tuple[list[str], np.ndarray, np.ndarray]:
     return [str(tmp_path / "shifter.csv"), *signed], x, detents
 
 
+@pytest.mark.slow
 def test_detents_are_told_the_curve_and_friction_is_found_beside_it(tmp_path: Path) -> None:
     words, x, detents = shifter(tmp_path)
     out = tmp_path / "part.json"

@@ -110,6 +110,7 @@ def test_a_file_says_that_its_times_were_rounded(tmp_path: Path) -> None:
     assert not any("rounded" in note for note in exact.notes)
 
 
+@pytest.mark.slow
 def test_a_damper_is_found_whatever_the_digits_of_the_clock(tmp_path: Path) -> None:
     """Read at the written times, the speed was wrong by up to a third from sample to sample."""
     recording = damper(tmp_path / "ms.csv", digits=3, seed=2)
