@@ -105,7 +105,7 @@ def minimise(objective: Objective, start: Iterate, rounds: int, enough: float) -
             updated = slopes + np.outer((left - predicted) / float(step @ step), step)
             gained, q, residual, cost = cost - new, q + step, left, new
         if exact and small:
-            converged, exact = True, not moved
+            converged, slopes = True, updated if moved else slopes
             break
         if moved and not small and gained > TRUSTED * promised:
             slopes, exact = updated, False

@@ -9,7 +9,7 @@ set is ranked below a part of itself.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -128,6 +128,7 @@ class FittedSets:
     fits: dict[frozenset[str], Fit] = field(default_factory=dict)
     others: dict[frozenset[str], Mapping[str, Signature]] = field(default_factory=dict)
     times: Counter[frozenset[str]] = field(default_factory=Counter)
+    begun: set[Hashable] = field(default_factory=set)
     followed: set[frozenset[str]] = field(default_factory=set)
     count: int = 0
     assessed: FloatArray = field(default_factory=lambda: np.zeros(2))
@@ -187,7 +188,12 @@ class FittedSets:
     def best(self) -> frozenset[str]:
         return max(self.fits, key=self.posterior)
 
-    def fit(self, starts: Sequence[Values], variance: float) -> Fit:
+    def fit(self, starts: Sequence[Values], variance: float) -> None:
+        """Fit a set from several starts; what was fitted from these already is not fitted again."""
+        begun = (tuple(tuple(start.items()) for start in starts), variance, self.discrepancy)
+        if begun in self.begun:
+            return
+        self.begun.add(begun)
         key = frozenset(starts[0])
         best = self.fits[self.best()] if self.fits else None
         wanted = -np.inf if best is None else best.log_likelihood + PRIOR_ODDS * (len(key) - len(best.names))
@@ -201,7 +207,6 @@ class FittedSets:
         own, kept = ((not fit.out_of_range, fit.log_likelihood) for fit in (found, self.fits.get(key, found)))
         if key not in self.fits or own > kept:
             self.fits[key] = found
-        return found
 
     def beside(self, base: Fit) -> Mapping[str, Signature]:
         """Return the signatures of all other candidates beside a fitted set: anew of those that act on its signal."""
@@ -348,7 +353,8 @@ def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
         new = dataset.stacked([own - e.left_out for own, e in pairs])
         if new @ new < LEAST_GAIN * fit.variance:
             break
-        fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, -np.inf)
+        # Which optional parameters are worth their while was decided before: a distortion does not ask again.
+        fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, np.inf)
     return fit
 
 
