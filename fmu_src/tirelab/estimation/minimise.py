@@ -82,7 +82,8 @@ def minimise(objective: Objective, start: Iterate, rounds: int, enough: float) -
     """Return the minimum near a start; it ends with a round that gains less than `enough` (twice a log likelihood).
 
     Between rounds the slopes are updated by Broyden's rule (Math. Comp. 19 (1965) 577). They are computed anew by
-    difference quotients where a step gains much less than they predicted, and at the end.
+    difference quotients where a step gains much less than they predicted, and before the last step, which is a short
+    one: after it they are updated.
     """
     q, residual, slopes = start.positions, start.residual, start.jacobian
     cost = objective.cost(residual, q)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from tirelab.estimation.minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
 
 ROWS = 40
@@ -23,6 +24,25 @@ def test_minimum_of_a_linear_model_is_ridge_regression() -> None:
     ridge = np.linalg.solve(COLUMNS.T @ COLUMNS + 0.09 * np.eye(3), COLUMNS.T @ DATA)
     assert found.positions == pytest.approx(ridge, abs=1e-6)
     assert found.converged
+
+
+def test_slopes_are_computed_once_before_the_last_step() -> None:
+    """r = exp(q) - 2 from q = 0.6, V = 1e-4: within a few steps at ln 2, where the slope is 2. It costs a simulation
+    for each slope and each step, and no slope after the last of them.
+    """
+    at: list[float] = []
+
+    def residual(q: NDArray[np.float64]) -> NDArray[np.float64]:
+        at.append(float(q[0]))
+        return np.exp(q) - 2.0
+
+    one = np.ones(1)
+    curved = Objective(residual, -9.0 * one, 9.0 * one, one, 1e-4)
+    found = minimise(curved, initial_iterate(curved, 0.6 * one), 30, 0.2)
+    assert found.positions[0] == pytest.approx(np.log(2.0), abs=1e-3)
+    assert found.jacobian[0, 0] == pytest.approx(2.0, rel=0.01)
+    assert at[-1] == found.positions[0]
+    assert found.evaluations == len(at)
 
 
 def test_minimum_respects_a_bound_and_fits_the_rest() -> None:

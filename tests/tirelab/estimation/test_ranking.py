@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from drives import flat_force
 from radialtire import CATALOGUE, TireModel
-from tirelab.estimation.fit import fitted
+from tirelab.estimation.fit import Fit, fitted
 from tirelab.estimation.held_out import held_out_of
 from tirelab.estimation.ranking import (
     EVALUATION,
@@ -159,6 +159,20 @@ def test_a_set_is_found_by_its_names_in_any_order() -> None:
     assert ranking.of(frozenset(("b",))) is None
 
 
+def test_nothing_is_fitted_twice_from_one_start(
+    dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
+) -> None:
+    """But the the starts of another discrepancy the same ones: what is slow in the rest may have been told since."""
+    sets = begun(dataset, signatures, noise, [])
+    nothing, count = sets.best_fit, sets.count
+    for _ in range(2):
+        sets.add(nothing, "viscous_damping")
+    assert sets.count == count + 1
+    sets.discrepancy = sets.discrepancy.above(3.0)
+    sets.add(nothing, "viscous_damping")
+    assert sets.count == count + 2
+
+
 def test_what_is_there_wins_although_nothing_was_begun_with(ranking: Ranking) -> None:
     assert ranking.best.names == ("viscous_damping",)
     (damping,) = ranking.best.values["viscous_damping"][:1]
@@ -226,15 +240,25 @@ def late_cycles() -> Recording:
     return replace(silent, force=simulate(arranged(TireModel(), [("force_lag", LATE)]), silent))
 
 
-def test_a_delay_among_long_blocks_is_that_of_the_samples() -> None:
-    """Cycles of 1.5 Hz every 2 ms, in blocks of several samples, read 10 ms late behind a low-pass of 5 ms."""
+def test_a_delay_among_long_blocks_is_that_of_the_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cycles of 1.5 Hz every 2 ms, in blocks of several samples, read 10 ms late behind a low-pass of 5 ms. The
+    optional parameters were tried in blocks: a correction does not ask for them.
+    """
+    wanted: list[float] = []
+
+    def seen(*given: Any) -> Fit:
+        wanted.append(given[-1])
+        return fitted(*given)
+
     late = late_cycles()
     read = replace(late, force=late.force + np.random.default_rng(3).normal(size=16_000))
     dataset = dataset_of([read], TireModel())
     assert dataset.experiments[0].size >= 2
     noise = discrepancy_of(dataset.misfit, 0.0)
     in_blocks = ranked(begun(dataset, signatures_of(("force_lag",), dataset), noise, []), lambda name: ())
+    monkeypatch.setattr("tirelab.estimation.ranking.fitted", seen)
     of_samples = corrected(in_blocks, samples_of([read], TireModel()))
+    assert set(wanted) == {np.inf}
     assert of_samples.best.names == ("force_lag",)
     total = sum(of_samples.best.values["force_lag"][:2])
     assert total == pytest.approx(0.015, abs=2e-5)
