@@ -123,3 +123,13 @@ def test_a_wrong_one_is_refused(given: dict[str, object], match: str) -> None:
 def test_a_tire_on_the_ground_has_none() -> None:
     with pytest.raises(ParameterError, match="needs a two-sided part"):
         TireModel(curve=PartCurve(AT, FORCE))
+
+
+def test_a_spring_in_series_gives_way_to_no_curve() -> None:
+    """It would give way to the force of the power law beside the curve alone, which is not that of the part."""
+    spring = CATALOGUE["series_compliance"]
+    values = tuple(p.start for p in spring.parameters)
+    with pytest.raises(
+        ParameterError, match="series_compliance gives way to the force of the law, not to that of a curve"
+    ):
+        TireModel(PART.law, ((spring, values),), two_sided=True, curve=PART.curve)
