@@ -116,6 +116,14 @@ def _(path: Path, m: Motion) -> None:
     path.write_bytes(("Время, с;Перемещение, мм;Нагрузка, кН\n" + rows).encode("cp1251"))
 
 
+@export("russian_channels.csv")
+def _(path: Path, m: Motion) -> None:
+    names = "Общее время (s);Шаг;Положение(8800 (0,1):Положение) (mm);Нагрузка(8800 (0,1):Нагрузка) (kN)\n"
+    path.write_bytes(
+        (names + table((m.time, 0.0 * m.time + 1.0, mm(m), 1e-3 * m.force), ";", 8)).encode("cp1251")
+    )
+
+
 @export("deformation_cz.csv")
 def _(path: Path, m: Motion) -> None:
     path.write_text(_with_commas(m, "Čas [s];Deformace [mm];Zatížení [N]"), "utf-8")

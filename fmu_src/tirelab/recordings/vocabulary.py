@@ -19,7 +19,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "zeitstempel",
         ),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
-        *("czas", "godzina", "cas", "время", "시간", "경과 시간", "시험 시간"),
+        *("czas", "godzina", "cas", "время", "общее время", "시간", "경과 시간", "시험 시간"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
         *(
@@ -75,7 +75,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "displacment",
         ),
         *("przemieszczenie", "ugiecie", "droga", "posuv", "posunuti", "draha", "deformace", "skok"),
-        *("перемещение", "деформация", "ход"),
+        *("перемещение", "положение", "деформация", "ход"),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量", "변위", "스트로크"),
     ),
     "radius": (
