@@ -14,7 +14,16 @@ from ..origin import Origin
 from ..units import split_header
 from .hdf5 import Hdf5Table
 from .libraries import reading_with
-from .table import Columns, FloatArray, Header, Wanted, numbers, of_one_length, sample_place
+from .table import (
+    Columns,
+    FloatArray,
+    Header,
+    RecordingError,
+    Wanted,
+    numbers,
+    of_one_length,
+    sample_place,
+)
 
 MOST_COLUMNS = 64
 """A matrix with more columns than this is a picture or a map, not a set of channels."""
@@ -23,7 +32,10 @@ MOST_COLUMNS = 64
 _COUNTED = re.compile(r"[({]\d+[)}]$")
 
 LOGGED = ("time", "signals")
-"""Fields of a struct in which Simulink logs signals: each of them has its numbers in `values`."""
+"""Fields of a struct in which Simulink logs signals: each of them has its numbers in `values`, its name in `label`."""
+
+SCIPYS_OWN = ("__function_workspace__",)
+"""Variables that SciPy adds to those of a file."""
 
 
 def matlab_table(path: Path) -> MatlabTable | Hdf5Table:
@@ -106,10 +118,23 @@ def _shapes(path: Path) -> list[tuple[str, tuple[int, ...], str]]:
     except TypeError:  # SciPy does not list such a file, but loads the rest of it
         loaded: dict[str, Any] = _scipy_io().loadmat(str(path))
     opaque = _scipy_io().matlab.MatlabOpaque
-    arrays = [(n, v) for n, v in loaded.items() if isinstance(v, np.ndarray) and not isinstance(v, opaque)]
+    own = [(n, v) for n, v in loaded.items() if isinstance(v, np.ndarray) and n not in SCIPYS_OWN]
+    arrays = [(n, v) for n, v in own if not isinstance(v, opaque)]
+    if own and not arrays:
+        raise RecordingError(_unopened(path, own[0][1]))
     return [
         (n, v.shape, "struct" if v.dtype.names else "cell" if v.dtype.hasobject else "") for n, v in arrays
     ]
+
+
+def _unopened(path: Path, objects: NDArray[Any]) -> str:
+    """Return what to say of a file that holds nothing but objects of classes, the first of them first."""
+    name, _, kind, _ = (v.decode() if isinstance(v, bytes) else v for v in objects.ravel()[0])
+    text = kind in ("table", "timetable")
+    instead = (
+        f"write{kind}({name}, '{path.stem}.csv')" if text else "save the vectors of numbers that it holds"
+    )
+    return f"{path.name}: {name} is a {kind}, which only MATLAB opens; there, {instead}, and read what that writes"
 
 
 def _load(path: Path, names: Sequence[str]) -> dict[str, Any]:
@@ -132,6 +157,16 @@ def _one_clock(arrays: Iterable[tuple[str, NDArray[Any]]]) -> dict[str, NDArray[
     return found
 
 
+def _named(struct: str, signals: NDArray[Any]) -> dict[str, Any]:
+    """Return the signals of a struct by their labels, by their numbers where these do not tell them apart."""
+    labels = signals["label"] if "label" in (signals.dtype.names or ()) else np.full(len(signals), "")
+    own = ["".join(map(str, np.ravel(label))) for label in labels]
+    return {
+        f"{struct}.{label}" if label and own.count(label) == 1 else f"{struct}({number})": signal
+        for number, (label, signal) in enumerate(zip(own, signals, strict=True), 1)
+    }
+
+
 def _fields(opened: Mapping[str, Any]) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield the arrays of numbers in structs and cells, by their names in MATLAB; a signal that Simulink logged with
     its time by its own name.
@@ -147,8 +182,7 @@ def _fields(opened: Mapping[str, Any]) -> Iterator[tuple[str, NDArray[Any]]]:
                 logged = struct["signals"].ravel(order="F") if set(LOGGED) <= set(value.dtype.names) else None
                 if logged is not None and "values" in (logged.dtype.names or ()):
                     fields = {f"{own}.time": struct["time"]}
-                    numbered = {f"{own}({j})": signal for j, signal in enumerate(logged, 1)}
-                    signals = {own: logged[0]} if len(logged) == 1 else numbered
+                    signals = {own: logged[0]} if len(logged) == 1 else _named(own, logged)
                     fields |= {n: signal["values"] for n, signal in signals.items()}
                 yield from _fields(fields)
         elif value.dtype.hasobject:

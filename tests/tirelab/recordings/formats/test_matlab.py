@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.io
 from one_recording import COLUMNS, DEFLECTION, FORCE, TIME, UNITS, assert_the_recording, refusal
+from tirelab.recordings.formats.matlab import matlab_table
 from tirelab.recordings.recording import read_recording
 
 
@@ -57,6 +58,19 @@ class TestMatlab:
         scipy.io.savemat(tmp_path / "a.mat", {"deflection": logged(DEFLECTION), "force": logged(FORCE)})
         assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
 
+    def test_signals_that_simulink_logged_in_one_struct_are_known_by_their_labels(
+        self, tmp_path: Path
+    ) -> None:
+        """Two scopes without a label, or with the same, keep their numbers."""
+        labelled = [(DEFLECTION, "deflection"), (FORCE, "force"), (TIME, ""), (TIME, "gain"), (TIME, "gain")]
+        signals = np.array(labelled, dtype=[("values", "O"), ("label", "O")])
+        scipy.io.savemat(tmp_path / "a.mat", {"Data": {"time": TIME, "signals": signals}})
+        table = matlab_table(tmp_path / "a.mat")
+        assert [h.text for h in table.headers] == [
+            *("Data.time", "Data.deflection", "Data.force", "Data(3)", "Data(4)", "Data(5)")
+        ]
+        assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
+
     def test_a_field_called_signals_need_not_be_of_simulink(self, tmp_path: Path) -> None:
         run = {"time": TIME, "signals": np.column_stack([DEFLECTION, FORCE])}
         scipy.io.savemat(tmp_path / "a.mat", {"run": run})
@@ -79,6 +93,35 @@ class TestMatlab:
         monkeypatch.setattr(scipy.io, "whosmat", unlisted)
         monkeypatch.setattr(scipy.io, "loadmat", lambda *a, **more: {**loadmat(*a, **more), "None": opaque})
         assert_the_recording(read_recording(tmp_path / "a.mat", units=UNITS, radius="flat"))
+
+    @pytest.mark.parametrize(
+        ("kind", "instead"),
+        [
+            ("timetable", "writetimetable(run, 'a.csv')"),
+            ("tcpip", "save the vectors of numbers that it holds"),
+        ],
+    )
+    def test_a_file_with_nothing_but_an_object_says_how_to_save_it(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str, instead: str
+    ) -> None:
+        """SciPy shows the numbers of all its objects as bytes of its own."""
+        scipy.io.savemat(tmp_path / "a.mat", {"x": 1.0})
+        fields = [(name, "O") for name in ("s0", "s1", "s2", "arr")]
+        row = np.array([(b"run", b"MCOS", kind.encode(), FORCE)], dtype=fields)
+        loaded = {
+            "None": scipy.io.matlab.MatlabOpaque(row),
+            "__function_workspace__": np.zeros((1, 9), np.uint8),
+        }
+
+        def unlisted(path: str) -> None:
+            raise TypeError("'NoneType' object is not iterable")
+
+        monkeypatch.setattr(scipy.io, "whosmat", unlisted)
+        monkeypatch.setattr(scipy.io, "loadmat", lambda *a, **more: loaded)
+        said = refusal(tmp_path / "a.mat", units=UNITS)
+        assert (
+            f"run is a {kind}, which only MATLAB opens; there, {instead}, and read what that writes" in said
+        )
 
     def test_vectors_of_unequal_length_are_refused(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "force": FORCE[::2]})
