@@ -18,7 +18,7 @@ from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
 from ..preprocessing.levels import NoiseProfile, levels_by_load, levels_by_state, white_level
-from ..preprocessing.noise import Noise, noise_of, resting, white_noise_of
+from ..preprocessing.noise import Noise, noise_in_misfit, noise_of, resting, white_noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (
@@ -132,7 +132,8 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
     """The same after one fit of the saturated model; white: whether the noise is known to have no memory."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
-    noise_left = partial(_noise_left, dataset.experiments, equations, left)
+    misfits = dataset.apart(dataset.misfit)
+    noise_left = partial(_noise_left, dataset.experiments, equations, left, misfits)
     noises = [noise_left(number, white=white) for number in range(len(left))]
     series = [e for e in dataset.with_noise(noises).experiments if e.reading.told_by_series]
     if series and not white:
@@ -156,6 +157,7 @@ def _noise_left(
     experiments: Sequence[Experiment],
     equations: NormalEquations,
     left: Sequence[FloatArray],
+    misfits: Sequence[FloatArray],
     number: int,
     series: Sequence[Experiment] = (),
     *,
@@ -163,7 +165,8 @@ def _noise_left(
 ) -> Noise:
     """Return the noise [N] of what the saturated model left of one experiment, with its memory in blocks.
 
-    left: of each experiment, in units of its noise; series: those whose noise has a memory; white: known to have none
+    left, misfits: of each experiment, in units of its noise; series: those whose noise has a memory
+    white: known to have none
     """
     e, own = experiments[number], left[number]
     x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
@@ -173,6 +176,7 @@ def _noise_left(
     known = [replace(n, level=n.level / e.noise, hum=n.hum / e.noise) for n in (*over, e.reading.of_mains)]
     others = partial(_left_in_one, equations, [r.size for r in left], number)
     noise = white_noise_of(own, driven, known) if white else noise_of(own, driven, others, known)
+    noise = noise_in_misfit(noise, misfits[number], driven, known)
     return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT), hum=e.noise * noise.hum)
 
 
