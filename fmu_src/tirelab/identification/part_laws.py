@@ -232,11 +232,14 @@ def _powers(s: _Samples, names: Sequence[str], first: int = 0) -> _Symbols:
 
 def _piecewise(s: _Samples) -> LawFit:
     few = [n for n in LINES if n == LINES[0] or SAMPLES_OF_LINE * n <= s.x.size]
-    best = min((_lines(s, n, None) for n in few), key=lambda pair: pair[0])
+    best = min((_lines(s, n, None) for n in few), key=lambda own: own[0])
     if s.both_ways:
         # At a turn the two ways meet: lines through all samples follow the way in there, and the middle elsewhere.
-        state = _loop_state(s, len(best[1].at) - 1)
-        best = min((best, *(_lines(s, n, state) for n in few)), key=lambda pair: pair[0])
+        state, all_of_it = _loop_state(s, len(best[1].at) - 1), best[1].rmse
+        # A loop that is larger than all that these lines leave is seen if it is most of that, not in a hold alone.
+        beside = [_lines(s, n, state) for n in few]
+        seen = [own for own in beside if min(2.0 * own[2] ** 2, 0.5 * own[1].rmse ** 2) < all_of_it**2]
+        return min((best, *seen), key=lambda own: own[0])[1]
     return best[1]
 
 
@@ -251,19 +254,17 @@ def _loop_state(s: _Samples, count: int) -> Array:
         return _lines(s, count, state(reach))[0]
 
     tried = np.log(REACHES)
-    best = int(np.argmin([criterion(reach) for reach in tried.tolist()]))
+    best = int(np.argmin(list(map(criterion, tried.tolist()))))
     near = tried[max(best - 1, 0)], tried[min(best + 1, tried.size - 1)]
-    return state(
-        float(minimize_scalar(criterion, bounds=near, method="bounded", options={"xatol": REACH_KNOWN}).x)
-    )
+    found = minimize_scalar(criterion, bounds=near, method="bounded", options={"xatol": REACH_KNOWN})
+    return state(float(found.x))
 
 
-def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]:
-    """Return straight lines, and the criterion of them together with the loop whose state (n,) is given, if one is."""
+def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit, float]:
+    """Return the criterion of lines beside the loop of a state (n,), if given, the lines, and what both leave [N]."""
     knots = _knots(s, count)
     hats, n = _hats(s.x, knots), knots.size
-    values, (residual, matrix) = _lstsq(hats, s)
-    lines, share = np.stack(hats, axis=1), 0.0
+    (values, (residual, matrix)), lines, share = _lstsq(hats, s), np.stack(hats, axis=1), 0.0
     for u in [] if state is None else [state] * PASSES:
         # Gauss and Newton: the last column changes the share b of the loop, whose product with the lines is no column.
         in_proportion = [hat * (1.0 + share * u) for hat in hats]
@@ -276,7 +277,7 @@ def _lines(s: _Samples, count: int, state: Array | None) -> tuple[float, LawFit]
     loop = (("a", s.load, "N"), ("b", 1.0, "1"))[: values.size - n]
     fit = _fit("piecewise", [*units, *loop], values, (residual, matrix), s.load)
     left, criterion = _left(s.load * (s.force - lines @ values[:n]), n)
-    return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at, state is not None)
+    return fit.bic, LawFit(fit.name, fit.constants[:n], left, criterion, at, state is not None), fit.rmse
 
 
 def _hats(x: Array, knots: Array) -> list[Array]:

@@ -76,6 +76,22 @@ def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
     )
 
 
+def test_the_middle_of_a_loop_is_not_told_of_a_hold() -> None:
+    """A ball on a gel that sticks to it: nothing up to 14 mm, 80 N at 15 mm, which decay in a long hold, and a pull of
+    30 N on the way back. One straight line leaves what the hold decays by, and lines no more than it.
+    """
+    way = np.linspace(0.0, 0.015, 1000)
+    hold = np.full(20000, 0.015)
+    touch = np.maximum(way - 0.014, 0.0) / 1e-3
+    back = np.where(way > 0.0138, 85.0 * (way - 0.0144) / 6e-4, 0.0)
+    force = np.concatenate(
+        [80.0 * touch, 80.0 - 25.0 * (1.0 - np.exp(-np.linspace(0.0, 5.0, 20000))), back[::-1]]
+    )
+    x = np.concatenate([way, hold, way[::-1]])
+    found = {fit.name: fit for fit in fit_laws([recording(x, force)])}
+    assert found["piecewise"].rmse < found["polynomial"].rmse
+
+
 def test_few_deflections_far_apart_have_laws() -> None:
     """Two steps of a gauge, none near half of the largest deflection."""
     x = np.repeat([0.0, 0.02], 300)
