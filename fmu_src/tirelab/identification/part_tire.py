@@ -16,7 +16,8 @@ from ..recordings.recording import Recording
 from ..recordings.sign_convention import mass_alike
 from ..recordings.zero import FARTHEST
 from .both_ways import common_curve
-from .part_laws import LawFit, constant_fit, reading_noise
+from .law_fit import LawFit
+from .part_laws import constant_fit, reading_noise
 from .power_fit import EXPONENT_BOUNDS
 
 GAPS = ("linear_gap", "power_gap")

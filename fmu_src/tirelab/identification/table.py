@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..names import power_of_ten, with_power
-from .part_laws import LawFit
+from .law_fit import LawFit
 from .result import SMALLEST, Identification, SurfaceFit, digits
 from .surfaces import CM_PER_M, describe
 
