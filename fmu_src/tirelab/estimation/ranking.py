@@ -365,9 +365,6 @@ def _fit_neighbours(sets: FittedSets, names: frozenset[str]) -> None:
         sets.remove(base, name)
     if len(names) < MOST_EFFECTS:
         _add_promising(sets, names, names, PROMISING)
-        # Its groups of parameters have scales of their own, which no prediction with one size knows.
-        if LAW in sets.signatures.keys() - names and not sets.spent:
-            sets.add(base, LAW)
     for name in sorted(names):
         _add_promising(sets, names - {name}, names, SWAPPED)
 
@@ -383,7 +380,7 @@ def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[st
     gains = predicted_gains([signatures[n] for n in (*others, *replaced)], base, sets.discrepancy)
     # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
     wanted = min([best + PRIOR_ODDS - sets.posterior(names), *gains[len(others) :]])
-    # What the law promises is known of one size for all its groups: it is one more, and takes no other's place.
+    # The law has a size for each of its groups, and promises more for it: it is one more, and takes no other's place.
     law_last = sorted(zip(gains, others, strict=False), key=lambda pair: (pair[1] == LAW, -pair[0]))
     for gain, name in (p for i, p in enumerate(law_last) if i < most or p[1] == LAW):
         if gain > wanted - GAIN_ERROR and not sets.spent:
