@@ -19,13 +19,26 @@ from ..vocabulary import any_channel
 from .cell_units import row_without_units, without_unit
 from .libraries import reading_with
 from .sheet import DATES, Sheet, cell_text, holds_any, length, stored_as_text, tables_of
-from .table import BLANK_WORDS, Columns, Header, RecordingError, Wanted, listed, not_a_number, quoted
+from .table import (
+    BLANK_WORDS,
+    Columns,
+    FloatArray,
+    Header,
+    RecordingError,
+    Wanted,
+    listed,
+    not_a_number,
+    quoted,
+)
 from .table_search import is_value
 from .text_rows import TextRows
-from .workbook import Version, opened
+from .workbook import Version, never_worked_out, opened
 
 MOST_ROWS = 1_048_576
 """The rows of a sheet (Excel's own limit)."""
+
+MOST_UNWORKED = 0.1
+"""The share of rows without a value from which on a formula without a result is refused, and not noted."""
 
 _NEEDED = (
     ("deflection", "m", {"deflection", "displacement", "stroke", "travel", "compression"}),
@@ -47,7 +60,10 @@ class ExcelTable:
         self.one = sheet
         version = Version.of(path)
         with reading_with(path, "a workbook"):
-            found = tables_of(version, sheet)
+            holding = tables_of(version, sheet)
+        found = [table for table in holding if sheet or not table.hidden]
+        self.hidden = tuple(table.title for table in holding if table not in found)
+        self._refuse_hidden(found, [table for table in holding if table not in found])
         if not found:
             what = f", sheet {quoted(sheet)}" if sheet else ""
             raise RecordingError(
@@ -61,6 +77,19 @@ class ExcelTable:
         self.sheets = [replace(sheet, headers=sheet.headers[:width]) for sheet in alike]
         self.headers: Sequence[Header] = [header for sheet in self.sheets for header in sheet.headers]
         self.others = tuple(sheet.title for sheet in found if sheet not in alike)
+
+    def _refuse_hidden(self, shown: Sequence[Sheet], hidden: Sequence[Sheet]) -> None:
+        """Refuse a workbook of which a hidden sheet alone has a deflection and a force."""
+        whole = [sheet for sheet in hidden if _channels(sheet.headers) == len(_NEEDED)]
+        if not whole or any(_channels(sheet.headers) == len(_NEEDED) for sheet in shown):
+            return
+        sheets = listed([quoted(sheet.title) for sheet in whole])
+        ways = [f"{self.path.name}@{sheet.title}" for sheet in (*whole[:1], *shown[:1])]
+        instead = f"; one that is shown: {shlex.quote(ways[1])}" if len(ways) > 1 else ""
+        raise RecordingError(
+            f"{self.path.name}: the sheets that it shows have no columns for deflection and force, and {sheets} "
+            f"{'is' if len(whole) == 1 else 'are'} hidden; one is read by its name, as {shlex.quote(ways[0])}{instead}"
+        )
 
     def sheet_of(self, index: int) -> Sheet:
         """The sheet on which a column stands."""
@@ -113,11 +142,37 @@ class ExcelTable:
                     column.extend([np.nan] * (len(lines) - len(column) - 1))
                     column.append(number)
         values = [np.array(column, dtype=np.float64) for column in columns]
+        unworked = self._unworked(sheet, wanted, values, lines)
         for want, seconds in zip(wanted, values, strict=True):
             if self.headers[want.index].dated and seconds.size:
                 seconds -= seconds[np.argmin(np.isnan(seconds))]
-        notes = (*sheet.notes, *self._which_sheet(sheet), *text_rows.notes())
+        notes = (*sheet.notes, *self._which_sheet(sheet), *unworked, *text_rows.notes())
         return Columns(tuple(values), lambda i: f"row {lines[i]}", notes)
+
+    def _unworked(
+        self, sheet: Sheet, wanted: Sequence[Wanted], values: Sequence[FloatArray], lines: Sequence[int]
+    ) -> tuple[str, ...]:
+        """Return the note of a formula without a result where a column has its first blank.
+
+        Errors: RecordingError where the column has so many blanks that it cannot be read.
+        """
+        for want, column in zip(wanted, values, strict=True):
+            blank = np.flatnonzero(np.isnan(column))
+            if column.size and not blank.size:
+                continue
+            row = lines[blank[0]] if blank.size else sheet.first_row
+            place = want.index % len(sheet.headers)
+            cell = never_worked_out(Version.of(self.path), sheet.title, row, place)
+            if not cell:
+                continue
+            said = (
+                f"sheet {quoted(sheet.title)}, cell {cell}: its formula was never worked out; open the workbook in a "
+                "spreadsheet program and save it"
+            )
+            if blank.size >= MOST_UNWORKED * column.size:
+                raise RecordingError(f"{self.path.name}, {said}")
+            return (said,)
+        return ()
 
     def _rows_below_names(self, sheet: Sheet) -> Iterator[tuple[int, Sequence[Any]]]:
         """Return the number of each row below the names, and its cells in the columns of the table."""
@@ -129,9 +184,9 @@ class ExcelTable:
 
     def _which_sheet(self, sheet: Sheet) -> tuple[str, ...]:
         """Return the note of the sheet that was read, where there is a choice."""
-        if not (self.one or self.others or len(self.sheets) > 1):
+        if not (self.one or self.others or self.hidden or len(self.sheets) > 1):
             return ()
-        return (f"read from sheet {quoted(sheet.title)}{self._others_text()}",)
+        return (f"read from sheet {quoted(sheet.title)}{self._others_text()}{self._hidden_text()}",)
 
     def _others_text(self) -> str:
         """Return which sheets have other columns, and how one of them is read."""
@@ -140,6 +195,13 @@ class ExcelTable:
         how = shlex.quote(f"{self.path.name}@{self.others[0]}")
         others = listed(list(map(quoted, self.others)))
         return f"; sheets of other columns: {others}; one is read by its name, as {how}"
+
+    def _hidden_text(self) -> str:
+        """Return which sheets are hidden, and how one of them is read."""
+        if not self.hidden:
+            return ""
+        how = shlex.quote(f"{self.path.name}@{self.hidden[0]}")
+        return f"; hidden and not read: {listed(list(map(quoted, self.hidden)))}; one is read as {how}"
 
     def _number(self, cell: object, line: int, want: Wanted) -> float:
         header = self.headers[want.index]

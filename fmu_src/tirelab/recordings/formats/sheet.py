@@ -4,7 +4,7 @@ import datetime
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
@@ -36,7 +36,8 @@ class Sheet:
     """The table of one sheet: its title, its row of names (0: none) and its first row of numbers from 1, its columns.
 
     style: of numbers that are stored as text, where most cells of a column hold one; rows: how many were seen below the
-    names; counted: whether its first column holds no text; provenance: the rows above the names
+    names; counted: whether its first column holds no text; provenance: the rows above the names; hidden: whether the
+    workbook does not show it
     """
 
     title: str
@@ -48,6 +49,7 @@ class Sheet:
     rows: int = 0
     counted: bool = False
     provenance: tuple[str, ...] = ()
+    hidden: bool = False
 
     @property
     def cell_units(self) -> Mapping[int, str]:
@@ -61,7 +63,11 @@ def tables_of(version: Version, sheet: str) -> tuple[Sheet, ...]:
     book = opened(version)
     titles = [_titled(version.path, book.titles, sheet)] if sheet else book.titles[:MOST_SHEETS]
     heads = {title: [list(row) for row in islice(book.rows(title), SEARCHED)] for title in titles}
-    return tuple(_sheet(title, head) for title, head in heads.items() if any(map(holds_any, head)))
+    return tuple(
+        replace(_sheet(title, head), hidden=title in book.hidden)
+        for title, head in heads.items()
+        if any(map(holds_any, head))
+    )
 
 
 @lru_cache(maxsize=MOST_SHEETS)

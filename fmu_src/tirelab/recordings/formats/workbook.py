@@ -33,10 +33,15 @@ class OpenpyxlBook:
     def __init__(self, book: Any) -> None:
         self.book = book
         self.titles = [sheet.title for sheet in book.worksheets]
+        self.hidden = frozenset(sheet.title for sheet in book.worksheets if sheet.sheet_state != "visible")
 
     def rows(self, title: str) -> Iterator[Sequence[Any]]:
         """The rows of a sheet from the first on."""
         yield from self.book[title].iter_rows(values_only=True)
+
+    def cells(self, title: str, row: int) -> Sequence[Any]:
+        """The cells of one row of a sheet, counted from 1, with what is known of them."""
+        return next(iter(self.book[title].iter_rows(min_row=row, max_row=row)), ())
 
 
 class CalamineBook:
@@ -45,6 +50,9 @@ class CalamineBook:
     def __init__(self, book: Any) -> None:
         self.book = book
         self.titles = list(book.sheet_names)
+        self.hidden = frozenset(
+            sheet.name for sheet in book.sheets_metadata if not str(sheet.visible).endswith(".Visible")
+        )
 
     def rows(self, title: str) -> Iterator[Sequence[Any]]:
         """The rows of a sheet from the first on."""
@@ -77,15 +85,34 @@ def _kept(version: Version) -> OpenpyxlBook | CalamineBook:
     return _loaded(version.path)
 
 
-def _loaded(path: Path) -> OpenpyxlBook | CalamineBook:
-    """Return a workbook that does not hold its file open."""
+def never_worked_out(version: Version, title: str, row: int, column: int) -> str:
+    """Return the name of a cell, C10, whose formula has no result; "" for any other. row: from 1; column: from 0
+
+    Programs that write workbooks without being able to reckon leave results out. Of .xls, .xlsb and .ods it is not
+    known.
+    """
+    book = opened(version)
+    if isinstance(book, CalamineBook):
+        return ""
+    formulas = _loaded(version.path, results=False)
+    assert isinstance(formulas, OpenpyxlBook)
+    pairs = list(zip(book.cells(title, row), formulas.cells(title, row), strict=False))
+    for result, formula in pairs[column : column + 1]:
+        # the result of a formula that is an empty text has its type
+        if formula.data_type == "f" and result.value is None and result.data_type == "n":
+            return str(formula.coordinate)
+    return ""
+
+
+def _loaded(path: Path, results: bool = True) -> OpenpyxlBook | CalamineBook:
+    """Return a workbook that does not hold its file open; results: of formulas, and not their text."""
     stream = io.BytesIO(path.read_bytes())
     _check_size(path, stream)
     if path.suffix.lower() in OTHERS:
         calamine = load_library(path, "python_calamine", "python-calamine")
         return CalamineBook(calamine.CalamineWorkbook.from_filelike(stream))
     openpyxl = load_library(path, "openpyxl", "openpyxl")
-    return OpenpyxlBook(openpyxl.load_workbook(stream, read_only=True, data_only=True))
+    return OpenpyxlBook(openpyxl.load_workbook(stream, read_only=True, data_only=results))
 
 
 def _check_size(path: Path, stream: io.BytesIO) -> None:
