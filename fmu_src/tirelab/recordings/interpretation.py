@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from ..names import plain
 from .channels import unit_of_column
-from .clock_doubt import YEAR_2001, YEAR_2096, clock_doubt
+from .clock_doubt import clock_doubt
 from .counting import Counted, count_from_zero
+from .epochs import began
 from .formats import Columns, Header, RecordingError
 from .formats.table import quoted
 from .pieces import Piece, samples_within
@@ -143,14 +144,14 @@ def _time_from_first(
     read: the times of the file, where it has any; backwards: whether these fell from row to row
     """
     notes = []
-    since_1970 = 0.0
+    beginning = ""
     if read is None:
         assert plan.interval is not None  # a plan without a column of time has one
         kept = np.arange(len(rows.values["deflection"])) if rows.kept is None else rows.kept
         time = np.asarray(kept * plan.interval, dtype=np.float64)
     else:
-        since_1970 = float(read[0]) if YEAR_2001 <= float(read[0]) <= YEAR_2096 else 0.0
-        time = read - since_1970 if since_1970 else read
+        beginning = began(float(read[0]), plan.conversions["time"].multiplied)
+        time = read - read[0] if beginning else read
     if backwards:
         notes.append("time falls from row to row: the rows read from the last to the first")
         if plan.headers["time"].dated:
@@ -162,8 +163,8 @@ def _time_from_first(
         time, anew = over_the_top(time, plan.conversions["time"].multiplied)
         if anew is not None:
             notes.append(f"the counter of the time is full before {rows.place(anew)}: it goes on from there")
-    if since_1970:
-        notes.append(f"time counted from the first sample, which is at {since_1970:.6f} s since 1970")
+    if beginning:
+        notes.append(f"time counted from the first sample, which is at {beginning}")
     return time, notes
 
 
