@@ -56,7 +56,8 @@ class Plan:
     @property
     def wanted(self) -> tuple[Wanted, ...]:
         """The columns to read, in the order of `headers`."""
-        return tuple(Wanted(match.index, name) for name, match in self.matches.items())
+        spare = set(OPTIONAL) - {"believed_force"}  # which is read where it is asked for alone
+        return tuple(Wanted(match.index, name, name not in spare) for name, match in self.matches.items())
 
 
 def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | None = None) -> Plan:

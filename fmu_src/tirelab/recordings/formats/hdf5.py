@@ -12,7 +12,17 @@ import numpy as np
 from ..origin import Origin
 from ..units import split_header
 from .libraries import load_library, reading_with
-from .table import Columns, FloatArray, Header, Wanted, numbers, of_one_length, sample_place
+from .table import (
+    Columns,
+    FloatArray,
+    Header,
+    Wanted,
+    numbers,
+    of_one_length,
+    of_other_length,
+    sample_place,
+    with_others_blank,
+)
 
 MOST_COLUMNS = 64
 """A matrix with more columns than this is a picture or a map, not a set of channels."""
@@ -86,7 +96,7 @@ class Hdf5Table:
         return self.samples * columns * 8 * 2
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
-        """The vectors wanted; refused when their lengths differ."""
+        """The vectors wanted; refused when their lengths differ, but for those that can be done without."""
         values: list[FloatArray] = []
         notes: list[str] = []
         headers = [self.headers[want.index] for want in wanted]
@@ -102,8 +112,9 @@ class Hdf5Table:
                 column, said = _unpacked(column, dataset.attrs)
                 values.append(column)
                 notes += [f"{header.text}: {said}"] if said else []
-        of_one_length(Origin(self.path.name), headers, values)
-        return Columns(tuple(values), sample_place, tuple(notes))
+        together, left_out = with_others_blank(headers, values, of_other_length(wanted, values))
+        of_one_length(Origin(self.path.name), headers, together)
+        return Columns(together, sample_place, (*notes, *left_out))
 
 
 def _unpacked(values: FloatArray, attributes: Any) -> tuple[FloatArray, str]:

@@ -22,7 +22,9 @@ from .table import (
     Wanted,
     numbers,
     of_one_length,
+    of_other_length,
     sample_place,
+    with_others_blank,
 )
 
 MOST_COLUMNS = 64
@@ -88,7 +90,7 @@ class MatlabTable:
         return max(self.samples, default=0) * columns * 8 * 2
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
-        """The vectors wanted; refused when their lengths differ."""
+        """The vectors wanted; refused when their lengths differ, but for those that can be done without."""
         headers = self.headers
         names = {self.columns[want.index][0] for want in wanted}
         with reading_with(self.path, "a .mat file"):
@@ -100,8 +102,10 @@ class MatlabTable:
             along = array if array.shape[0] == max(array.shape) else array.T
             column = along[:, part or 0]
             values.append(numbers(Origin(self.path.name), headers[want.index], column, want.channel))
-        of_one_length(Origin(self.path.name), [headers[want.index] for want in wanted], values)
-        return Columns(tuple(values), sample_place)
+        own = [headers[want.index] for want in wanted]
+        together, left_out = with_others_blank(own, values, of_other_length(wanted, values))
+        of_one_length(Origin(self.path.name), own, together)
+        return Columns(together, sample_place, left_out)
 
 
 def _scipy_io() -> Any:

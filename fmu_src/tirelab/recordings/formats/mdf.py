@@ -18,6 +18,7 @@ from .table import (
     of_one_length,
     quoted,
     sample_place,
+    with_others_blank,
 )
 
 LEAST_READS = 20_000
@@ -78,37 +79,41 @@ class MdfTable:
 
         Errors: RecordingError when the channels were sampled at different times: nothing is resampled here.
         """
+        origin, headers = Origin(self.path.name), [self.headers[want.index] for want in wanted]
         read: dict[int, FloatArray] = {}
-        clock: FloatArray | None = None
+        stamps: dict[int, FloatArray] = {}
         with (
             reading_with(self.path, "MDF", "asammdf"),
             _Stream(self.path) as file,
             self.library.MDF(file) as mdf,
         ):
-            for want in wanted:
+            for i, want in enumerate(wanted):
                 if want.index == self.time_axis:
                     continue
                 group, index = self.channels[want.index]
                 # asammdf would leave invalid samples out, and with them the channel's step with the others.
                 signal = mdf.get(group=group, index=index, ignore_invalidation_bits=True)
-                column = numbers(
-                    Origin(self.path.name), self.headers[want.index], signal.samples, want.channel
-                )
+                column = numbers(origin, headers[i], signal.samples, want.channel)
                 invalid = signal.invalidation_bits
                 if invalid is not None:
                     column = np.where(np.asarray(invalid, dtype=bool), np.nan, column)
-                read[want.index] = column
-                stamps = np.asarray(signal.timestamps, dtype=np.float64)
-                clock = stamps if clock is None else clock
-                of_one_length(Origin(self.path.name), [self.headers[i] for i in read], list(read.values()))
-                if not np.array_equal(clock, stamps):
-                    first, this = self.headers[next(iter(read))], self.headers[want.index]
-                    raise RecordingError(
-                        f"{self.path.name}: {quoted(first.text)} and {quoted(this.text)} were sampled at "
-                        "different times; resample them to one time (asammdf: MDF.resample) and save again"
-                    )
-        if clock is None:
+                read[i] = column
+                stamps[i] = np.asarray(signal.timestamps, dtype=np.float64)
+        if not read:
             raise RecordingError(f"{self.path.name}: holds no channel but time; name channels with --columns")
-        columns = [clock if want.index == self.time_axis else read[want.index] for want in wanted]
+        first = next((i for i in read if wanted[i].needed), next(iter(read)))
+        odd = [i for i in read if not np.array_equal(stamps[first], stamps[i])]
+        at_fault = next((i for i in odd if wanted[i].needed), None)
+        if at_fault is not None:
+            of_one_length(origin, [headers[i] for i in (first, at_fault)], [read[first], read[at_fault]])
+            raise RecordingError(
+                f"{self.path.name}: {quoted(headers[first].text)} and {quoted(headers[at_fault].text)} were sampled "
+                "at different times; resample them to one time (asammdf: MDF.resample) and save again"
+            )
+        columns, left_out = with_others_blank(
+            headers,
+            [read.get(i, stamps[first]) for i in range(len(wanted))],
+            dict.fromkeys(odd, "was sampled at different times"),
+        )
         notes = tuple(f"asammdf warns: {message}" for message in dict.fromkeys(self.warned))
-        return Columns(tuple(columns), sample_place, notes)
+        return Columns(columns, sample_place, (*notes, *left_out))

@@ -63,10 +63,14 @@ def with_dates(headers: Sequence[Header], dated: Container[int]) -> tuple[Header
 
 @dataclass(frozen=True)
 class Wanted:
-    """One column to read, by its number in the file from 0, and the channel of ours that it becomes."""
+    """One column to read, by its number in the file from 0, and the channel of ours that it becomes.
+
+    needed: whether there is no recording without it
+    """
 
     index: int
     channel: str
+    needed: bool = True
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,7 @@ class SomeColumns:
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
         """The numbers of the columns wanted."""
-        return self.table.read([Wanted(self.first + want.index, want.channel) for want in wanted])
+        return self.table.read([replace(want, index=self.first + want.index) for want in wanted])
 
 
 def is_comment(cell: str) -> bool:
@@ -177,3 +181,26 @@ def of_one_length(origin: Origin, wanted: Sequence[Header], values: Sequence[Flo
             f"{origin}: the columns have unequal numbers of samples ({lengths_shown}); "
             "resample them to one time, or name columns that were recorded together"
         )
+
+
+def with_others_blank(
+    headers: Sequence[Header], values: Sequence[FloatArray], apart: Mapping[int, str]
+) -> tuple[tuple[FloatArray, ...], tuple[str, ...]]:
+    """Return the columns with those that were recorded apart as blanks, and a note of each of these.
+
+    apart: by the place of a column among them, what sets it apart
+    """
+    samples = next((len(column) for i, column in enumerate(values) if i not in apart), 0)
+    blank = tuple(np.full(samples, np.nan) if i in apart else column for i, column in enumerate(values))
+    return blank, tuple(f"{quoted(headers[i].text)} not read: it {said}" for i, said in apart.items())
+
+
+def of_other_length(wanted: Sequence[Wanted], values: Sequence[FloatArray]) -> dict[int, str]:
+    """Return which of the columns that a recording can do without have another number of samples, and what is said."""
+    needed = [len(column) for want, column in zip(wanted, values, strict=True) if want.needed]
+    samples = needed[0] if needed else 0
+    return {
+        i: f"has {len(column)} samples, the others {samples}"
+        for i, (want, column) in enumerate(zip(wanted, values, strict=True))
+        if needed and not want.needed and len(column) != samples
+    }

@@ -17,8 +17,10 @@ from .table import (
     Wanted,
     numbers,
     of_one_length,
+    of_other_length,
     quoted,
     sample_place,
+    with_others_blank,
 )
 
 
@@ -52,37 +54,43 @@ class TdmsTable:
         return self.samples * columns * 8 * 3
 
     def read(self, wanted: Sequence[Wanted]) -> Columns:
-        """The channels wanted; refused when their lengths or waveform clocks differ."""
-        headers: list[Header] = []
-        columns: dict[int, FloatArray] = {}
-        clocks: dict[str, tuple[object, ...]] = {}
-        time: FloatArray | None = None
+        """The channels wanted; refused when their lengths or waveform clocks differ, but for those that can be done
+        without."""
+        origin, headers = Origin(self.path.name), [self.headers[want.index] for want in wanted]
+        read: dict[int, FloatArray] = {}
+        clocks: dict[int, tuple[object, ...]] = {}
+        times: dict[int, FloatArray] = {}
         with reading_with(self.path, "TDMS", "nptdms"), self.path.open("rb") as stream:
             file = self.library.TdmsFile.open(stream)
-            for want in wanted:
+            for i, want in enumerate(wanted):
                 place = self.channels[want.index]
                 if place is None:
                     continue
                 channel = file[place[0]][place[1]]
-                header = self.headers[want.index]
-                headers.append(header)
-                columns[want.index] = numbers(Origin(self.path.name), header, channel[:], want.channel)
-                if want.index != self.time_axis and "wf_increment" in channel.properties:
-                    clocks[header.text] = _clock(channel)
-                    time = _waveform_time(channel) if time is None else time
-        of_one_length(Origin(self.path.name), headers, list(columns.values()))
-        if self.time_axis in {want.index for want in wanted}:
-            if time is None:
+                read[i] = numbers(origin, headers[i], channel[:], want.channel)
+                if "wf_increment" in channel.properties:
+                    clocks[i] = _clock(channel)
+                    times[i] = _waveform_time(channel)
+        apart = of_other_length([wanted[i] for i in read], list(read.values()))
+        apart = {list(read)[i]: said for i, said in apart.items()}
+        by_waveform = [i for i in range(len(wanted)) if i not in read]
+        if by_waveform:
+            needed = [i for i in clocks if wanted[i].needed] or list(clocks)
+            if not needed:
                 raise RecordingError(
                     f"{self.path.name}: no channel wanted has a waveform time; name one: time=NAME"
                 )
-            if len(set(clocks.values())) > 1:
-                named = " and ".join(quoted(name) for name in list(clocks)[:2])
+            odd = [i for i in clocks if clocks[i] != clocks[needed[0]]]
+            if set(odd) & set(needed):
+                named = " and ".join(quoted(headers[i].text) for i in (needed[0], odd[0]))
                 raise RecordingError(
                     f"{self.path.name}: {named} start or step differently in time; resample them to one time"
                 )
-            columns[self.time_axis or 0] = time
-        return Columns(tuple(columns[want.index] for want in wanted), sample_place, _notes(self.warned))
+            apart = {**dict.fromkeys(odd, "starts or steps differently in time"), **apart}
+            read |= dict.fromkeys(by_waveform, times[needed[0]])
+        columns, left_out = with_others_blank(headers, [read[i] for i in range(len(wanted))], apart)
+        of_one_length(origin, headers, columns)
+        return Columns(columns, sample_place, (*_notes(self.warned), *left_out))
 
 
 UNIT_KEYS = ("unit_string", "NI_UnitDescription")

@@ -52,3 +52,14 @@ def test_without_attributes_values_are_as_written(tmp_path: Path) -> None:
     found = read_recording(packed(tmp_path / "a.h5"), radius="flat")
     np.testing.assert_allclose(found.force, (FORCE - 20.0) / 5.0)
     assert not any("applied" in note for note in found.notes)
+
+
+def test_a_vector_of_another_length_is_left_out_where_it_can_be_done_without(tmp_path: Path) -> None:
+    path = packed(tmp_path / "a.h5")
+    with h5py.File(path, "r+") as file:
+        file["slow/temperature"] = np.full(40, 21.0)
+        file["slow/temperature"].attrs["units"] = "degC"
+    found = read_recording(path, radius="flat")
+    np.testing.assert_allclose(found.deflection, 1e-3 * DEFLECTION)
+    assert found.temperature is None
+    assert "'slow/temperature' not read: it has 40 samples, the others 400" in found.notes

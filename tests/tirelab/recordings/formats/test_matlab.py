@@ -128,6 +128,10 @@ class TestMatlab:
         assert "unequal numbers of samples ('time' 200, 'deflection' 200, 'force' 100)" in refusal(
             tmp_path / "a.mat", units=UNITS
         )
+        values = {"time": TIME, "deflection": DEFLECTION, "force": FORCE, "temperature_degC": FORCE[::2]}
+        scipy.io.savemat(tmp_path / "b.mat", values)
+        told = "'temperature_degC' not read: it has 100 samples, the others 200"
+        assert told in read_recording(tmp_path / "b.mat", units=UNITS, radius="flat").notes
 
     def test_complex_numbers_are_refused(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"time": TIME, "deflection": DEFLECTION, "force": FORCE * 1j})

@@ -45,3 +45,19 @@ class TestMdf:
     )
     def test_channels_of_other_times_are_not_resampled(self, path: Path, force: str, said: str) -> None:
         assert said in refusal(path, columns={"deflection": "0/Stroke", "force": force})
+
+    def test_a_channel_that_can_be_done_without_is_left_out_instead(self, tmp_path: Path) -> None:
+        asammdf = pytest.importorskip("asammdf")
+        with asammdf.MDF(version="4.10") as mdf:
+            mdf.append([asammdf.Signal(FORCE[::10], TIME[::10], unit="degC", name="Temperature")])
+            mdf.append(
+                [
+                    asammdf.Signal(DEFLECTION, TIME, unit="mm", name="Stroke"),
+                    asammdf.Signal(FORCE, TIME, unit="kN", name="Load"),
+                ]
+            )
+            mdf.save(tmp_path / "b.mf4")
+        recording = read_recording(tmp_path / "b.mf4", radius="flat")
+        np.testing.assert_allclose(recording.force, FORCE * 1000.0, rtol=3e-16)
+        assert recording.temperature is None
+        assert "'Temperature' not read: it was sampled at different times" in recording.notes

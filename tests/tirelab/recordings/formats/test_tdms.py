@@ -68,3 +68,36 @@ def test_units_as_labview_writes_them(tmp_path: Path) -> None:
     recording = read_recording(tmp_path / "a.tdms", radius="flat")
     np.testing.assert_allclose(recording.force, FORCE * 1000.0, rtol=3e-16)
     np.testing.assert_allclose(recording.deflection, DEFLECTION / 1000.0, rtol=3e-16)
+
+
+@pytest.mark.parametrize(
+    ("temperature", "step", "said"),
+    [
+        (FORCE[::10], 0.1, f"has {SAMPLES // 10} samples, the others {SAMPLES}"),
+        (FORCE[::10], None, f"has {SAMPLES // 10} samples, the others {SAMPLES}"),
+        (FORCE, 0.02, "starts or steps differently in time"),
+    ],
+)
+def test_a_channel_that_can_be_done_without_is_left_out_where_it_was_recorded_apart(
+    tmp_path: Path, temperature: np.ndarray, step: float | None, said: str
+) -> None:
+    nptdms = pytest.importorskip("nptdms")
+    channels = [
+        ("Temp", temperature, "degC", step),
+        ("Stroke", DEFLECTION, "mm", 0.01),
+        ("Load", FORCE, "kN", 0.01),
+    ]
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment(
+            [
+                nptdms.ChannelObject(
+                    "rig", n, v, {"unit_string": unit, **({} if dt is None else {"wf_increment": dt})}
+                )
+                for n, v, unit, dt in channels
+            ]
+        )
+    recording = read_recording(tmp_path / "a.tdms", radius="flat")
+    np.testing.assert_allclose(recording.time, TIME, atol=1e-15)
+    np.testing.assert_allclose(recording.force, FORCE * 1000.0, rtol=3e-16)
+    assert recording.temperature is None
+    assert f"'Temp' not read: it {said}" in recording.notes
