@@ -22,6 +22,11 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("czas", "godzina", "cas", "время", "общее время", "시간", "경과 시간", "시험 시간"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
         *("tiempo", "tiempo transcurrido", "tiempo de ensayo", "marca de tiempo"),
+        *("tempo de ensaio", "tempo de teste", "tempo di prova", "testtijd", "verstreken tijd"),
+        *("tid", "provtid", "mättid", "förfluten tid", "testtid", "prøvetid", "måletid", "forløbet tid"),
+        *("forløpt tid", "aika", "kulunut aika", "testiaika", "zaman", "süre", "geçen süre", "test süresi"),
+        *("idő", "eltelt idő", "mérési idő", "vizsgálati idő", "czas próby", "czas badania"),
+        *("čas zkoušky", "čas skúšky", "timp", "vrijeme"),
         *(
             "datetime",
             "date time",
@@ -75,6 +80,59 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "displacment",
         ),
         *("przemieszczenie", "ugiecie", "droga", "posuv", "posunuti", "draha", "deformace", "skok"),
+        *("przemieszczenie trawersy", "odkształcenie", "ściśnięcie", "wydłużenie", "położenie", "pozycja"),
+        *(
+            "zdvih",
+            "stlačení",
+            "průhyb",
+            "prodloužení",
+            "posun",
+            "poloha",
+            "posunutie",
+            "stlačenie",
+            "priehyb",
+        ),
+        *("predĺženie", "deformácia", "pomak", "pomik", "hod", "progib", "deplasare", "cursă", "deformare"),
+        *(
+            "väg",
+            "förskjutning",
+            "kolvväg",
+            "fjädringsväg",
+            "slaglängd",
+            "hoptryckning",
+            "nedböjning",
+            "läge",
+        ),
+        *(
+            "intryckning",
+            "förlängning",
+            "sträcka",
+            "deformation",
+            "vej",
+            "forskydning",
+            "vandring",
+            "flytning",
+        ),
+        *("slaglængde", "sammentrykning", "nedbøjning", "indtrykning", "forlængelse", "vei", "forskyvning"),
+        *("slaglengde", "deformasjon", "nedbøyning", "forlengelse", "posisjon"),
+        *("siirtymä", "matka", "iskunpituus", "puristuma", "painuma", "muodonmuutos", "taipuma", "venymä"),
+        *(
+            "yer değiştirme",
+            "yerdeğiştirme",
+            "deplasman",
+            "strok",
+            "kurs",
+            "sehim",
+            "çökme",
+            "uzama",
+            "konum",
+        ),
+        *("deformasyon", "elmozdulás", "út", "löket", "benyomódás", "összenyomódás", "deformáció"),
+        *("alakváltozás", "behajlás", "lehajlás", "megnyúlás", "pozíció"),
+        *("slag", "indeuking", "vervorming", "doorbuiging", "inveering", "verlenging", "positie"),
+        *("curso", "compressão", "deflexão", "extensão", "alongamento", "percurso", "posição", "flecha"),
+        *("compresión", "alargamiento", "posición", "posizione", "allungamento", "compressione"),
+        *("kompression", "verschiebung", "durchbiegung", "auslenkung", "eindringweg", "zustellung"),
         *("перемещение", "положение", "деформация", "ход"),
         *("位移", "变形", "行程", "横梁位移", "变位", "変位", "ストローク", "変位量", "변위", "스트로크"),
     ),
@@ -111,7 +169,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *(
             "siła",
             "siła standardowa",
-            "obciazenie",
+            "obciążenie",
             "nacisk",
             "sila",
             "zatizeni",
@@ -119,6 +177,11 @@ FOREIGN: dict[str, tuple[str, ...]] = {
             "нагрузка",
             "усилие",
         ),
+        *("siła ściskająca", "tlaková síla", "zaťaženie", "opterećenje", "obremenitev", "forță", "sarcină"),
+        *("tryckkraft", "provkraft", "belastning", "trykkraft", "trykkkraft", "prøvekraft"),
+        *("voima", "kuorma", "kuormitus", "puristusvoima", "kuvvet", "yük", "basma kuvveti"),
+        *("erő", "terhelés", "nyomóerő", "drukkracht", "força normal", "força vertical", "força radial"),
+        *("belastung", "axialkraft", "vertikalkraft", "radlast", "andruckkraft"),
         *("力", "载荷", "负荷", "试验力", "試験力", "荷重", "하중", "힘", "시험력"),
     ),
     "pressure": (
@@ -129,15 +192,35 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         "pressione",
         "pressao",
         "bandenspanning",
+        *(
+            "tryck",
+            "däcktryck",
+            "tryk",
+            "trykk",
+            "paine",
+            "rengaspaine",
+            "basınç",
+            "nyomás",
+            "druk",
+            "ciśnienie",
+        ),
+        "tlak",
         "压力",
         "气压",
         "圧力",
         "空気圧",
     ),
-    "temperature": ("temperatur", "reifentemperatur", "temperature du pneu", "temperatura", "温度"),
-    "speed": ("geschwindigkeit", "vitesse", "velocidad", "速度"),
+    "temperature": (
+        *("temperatur", "reifentemperatur", "temperature du pneu", "temperatura", "temperatuur", "温度"),
+        *("lämpötila", "sıcaklık", "hőmérséklet", "teplota"),
+    ),
+    "speed": (
+        *("geschwindigkeit", "vitesse", "velocidad", "velocidade", "hastighet", "hastighed", "nopeus", "hız"),
+        *("sebesség", "snelheid", "prędkość", "rychlost", "速度"),
+    ),
 }
-"""Names of each channel that are taken where no column has one of the usual English names; without accents."""
+"""Names of each channel that are taken where no column has one of the usual English names, however their accents are
+written."""
 
 SECOND = {
     "deflection": (
@@ -165,6 +248,8 @@ NOT_MEASURED = frozenset(
         *("command", "cmd", "demand", "target", "setpoint", "set", "reference", "program", "error"),
         *("peak", "valley", "maximum", "max", "minimum", "min", "mean", "average", "amplitude", "limit"),
         *("soll", "sollwert", "consigne", "consigna", "mittelwert", "moyenne", "media"),
+        *("borvarde", "medelvarde", "middelvaerdi", "keskiarvo", "hedef", "ortalama", "atlag", "gemiddelde"),
+        *("zadana", "zadane", "zadany", "srednia", "prumer", "desejado", "desejada"),
     }
 )
 """Words of a name that say that its column holds no reading: what was asked for, or what was worked out."""
@@ -202,18 +287,27 @@ COUNTERS = frozenset(
         ),
         *("step", "steps", "pulse", "pulses", "tick", "ticks", "cycle", "cycles", "schritt", "schritte"),
         *("point number", "messpunkt", "messwert", "nummer", "zeile", "echantillon", "numero", "muestra"),
+        *("numer", "lp", "cislo", "sira", "sorszam", "indeks", "punkt", "mittaus"),
         *("序号", "编号", "番号"),
     }
 )
 """Names of columns that count the rows, or the steps of a motor."""
 
 STRAINED = frozenset(
-    ("strain", "stress", "dehnung", "spannung", "contrainte", "esfuerzo", "tensione", "应变", "应力")
+    {
+        *("strain", "stress", "dehnung", "spannung", "contrainte", "esfuerzo", "tensione", "应变", "应力"),
+        *("tojning", "toyning", "venyma", "jannitys", "gerinim", "gerilme", "odksztalcenie", "naprezenie"),
+    }
 )
 """Words of a name that say a deflection or a force by the size of the specimen, where no unit says otherwise."""
 
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
+
+_WHOLE_LETTERS = str.maketrans(
+    {"ß": "ss", "ł": "l", "ø": "o", "æ": "ae", "œ": "oe", "đ": "d", "ı": "i", "ð": "d", "þ": "th"}
+)
+"""Small letters that Unicode does not part into a letter and its mark."""
 
 _SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7a3]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
@@ -226,7 +320,7 @@ _COUNTED = re.compile(
 def plain(name: str) -> str:
     """Return a name in small letters, without accents, dots and underscores: `Déplacement_traverse` becomes
     `deplacement traverse`."""
-    letters = unicodedata.normalize("NFKD", name.casefold().replace("ß", "ss"))
+    letters = unicodedata.normalize("NFKD", name.casefold().translate(_WHOLE_LETTERS))
     kept = "".join(c for c in letters if not unicodedata.combining(c))
     # what stays in parts, as the letters of Korean do, is put together again
     return unicodedata.normalize("NFC", " ".join(re.sub(r"[\s_.'’-]+", " ", kept).split()))
@@ -250,7 +344,7 @@ def any_channel(name: str) -> str | None:
 def begins_like(name: str, channel: str) -> bool:
     """Whether a name of four letters or more is the beginning of a word for a channel: `forc`, `displ`, `dist`."""
     short = plain(name)
-    words = (channel, *FOREIGN.get(channel, ()), *BESIDE.get(channel, ()))
+    words = (channel, *map(plain, FOREIGN.get(channel, ())), *BESIDE.get(channel, ()))
     return len(short) >= SHORTEST and any(word.startswith(short) for word in words)
 
 
@@ -288,5 +382,7 @@ def name_and_unit(text: str) -> tuple[str, str] | None:
     return (found["name"].strip(), found["unit"].strip()) if found else None
 
 
-_SECOND_OF = {word: channel for channel, words in SECOND.items() for word in words}
-_CHANNEL_OF = {word: channel for channel, words in FOREIGN.items() for word in words}
+_SECOND_OF = {plain(word): channel for channel, words in SECOND.items() for word in words}
+_CHANNEL_OF = {plain(word): channel for channel, words in FOREIGN.items() for word in words}
+WORDS = frozenset(_CHANNEL_OF)
+"""All names of the first choice, as `plain` has them."""

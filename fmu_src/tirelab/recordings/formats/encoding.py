@@ -7,7 +7,7 @@ import re
 import shlex
 from pathlib import Path
 
-from ..vocabulary import FOREIGN, plain
+from ..vocabulary import WORDS, plain
 from .table import RecordingError
 
 BYTE_ORDER_MARKS = (
@@ -33,6 +33,8 @@ LOCAL = {
     "cp950": "Big5 (CP 950)",
     "cp1250": "Windows-1250 (Central European)",
     "cp1251": "Windows-1251 (Cyrillic)",
+    "cp1254": "Windows-1254 (Turkish)",
+    "cp850": "CP 850 (DOS)",
 }
 """Encodings that are told from Latin-1 by the words for channels that they make, and what a note calls them."""
 
@@ -85,14 +87,13 @@ def _local(raw: bytes, whole: bool) -> str:
     """Return the encoding in which the text has most words for channels, if Latin-1 has fewer; else that of Chinese
     where it is likelier than western letters, or "".
     """
-    words = {word for known in FOREIGN.values() for word in known}
     counts = {"": 0}
     for encoding in ("latin-1", *LOCAL):
         try:
             text = plain(codecs.getincrementaldecoder(encoding)().decode(raw[:JUDGED], final=False))
         except UnicodeDecodeError:
             continue
-        counts[encoding] = sum(word in text for word in words)
+        counts[encoding] = sum(word in text for word in WORDS)
     best = max(counts, key=lambda encoding: counts[encoding])
     if best in LOCAL and _decodes(raw, best, whole):
         return best
