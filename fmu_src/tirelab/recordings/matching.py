@@ -153,7 +153,7 @@ def _matched(
     for channel in CHANNELS:
         indices = found.get(channel.name, [])
         if len(indices) > 1:
-            raise _several(origin, headers, channel, indices)
+            raise several_columns(origin, headers, channel.name, indices)
         if indices:
             matches[channel.name] = Match(indices[0])
     ordered = {c.name: matches[c.name] for c in CHANNELS if c.name in matches}
@@ -304,14 +304,16 @@ class SeveralTrials(RecordingError):
         self.trials = trials
 
 
-def _several(
-    origin: Origin, headers: Sequence[Header], channel: Channel, found: Sequence[int]
+def several_columns(
+    origin: Origin, headers: Sequence[Header], channel: str, found: Sequence[int]
 ) -> RecordingError:
-    candidates = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in found)
-    which = origin.columns(**{channel.name: f"#{found[0] + 1}"})
-    without = "" if channel.required else f", or leave it out with {origin.columns(**{channel.name: ''})}"
+    """Return the error for several columns that may be a channel; the first of them is what is proposed."""
+    candidates = " and ".join(f"{quoted(headers[i].text)} (#{i + 1})" for i in sorted(found))
+    which = origin.columns(**{channel: f"#{found[0] + 1}"})
+    required = next(c.required for c in CHANNELS if c.name == channel)
+    without = "" if required else f", or leave it out with {origin.columns(**{channel: ''})}"
     return RecordingError(
-        f"{origin}: {candidates} may each be the {channel.name}; say which with {which}{without}"
+        f"{origin}: {candidates} may each be the {channel}; say which with {which}{without}"
     )
 
 

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..names import plain
-from .asking import Lacking, asked, may_count_time, rises, stating_time
+from .asking import Lacking, asked
 from .channels import EXAMPLE_UNITS, UNIT_OF, known_channel, says_absolute, unit_of_column, units_stated
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import SomeColumns, listed, quoted
-from .matching import Match, match_channels, option_name, recognised
+from .guessing import may_count_time, rises, stating_time
+from .matching import Match, Matches, SeveralTrials, match_channels, option_name, recognised, several_columns
 from .metadata import Settings
 from .origin import Origin
 from .rows import OPTIONAL
 from .sampling import parse_interval, sampling_said
+from .totals import total_force
 from .units import (
     Conversion,
     UnitError,
     conversion,
     given_conversion,
+    is_no_unit,
     measures,
     parse_quantity,
     parse_radius,
@@ -67,7 +70,7 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
     Errors: IncompleteRecording where a required column, a unit or the radius is not known, for all of them at once;
     RecordingError where several columns may be a channel or a unit is none.
     """
-    found = match_channels(origin, table.headers, table.time_axis, settings.columns, trial)
+    found, total = _matches(origin, table, settings, trial)
     matches = dict(found.columns)
     interval, notes = _given_interval(origin, matches, settings)
     radius, more = _given_radius(origin, table, matches, settings)
@@ -108,14 +111,15 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
             f"acceleration can be told ({known}: {origin.sampling(rate or '10Hz')})"
         )
     constants, told = _constants(matches, settings)
-    told += _others_alike(table.headers, found.columns, settings) if found.trials == 1 else []
+    given = {*settings.columns, *(["force"] if total else [])}
+    told += _others_alike(table.headers, found.columns, given) if found.trials == 1 else []
     return Plan(
         origin,
         matches,
         headers,
         conversions,
         radius,
-        (*notes, *more, *told),
+        (*notes, *more, *total, *told),
         None if "time" in matches else interval,
         not no_time,
         found.trials,
@@ -123,6 +127,35 @@ def plan_reading(origin: Origin, table: Table, settings: Settings, trial: int | 
         {name: option_name(looked_at.headers, match.index) for name, match in of_test.items()},
         settings,
     )
+
+
+def _matches(
+    origin: Origin, table: Table, settings: Settings, trial: int | None
+) -> tuple[Matches, tuple[str, ...]]:
+    """Return which column is which channel; of forces of which one is the sum of others that one, with a note.
+
+    Errors: as `match_channels`; RecordingError where a column that is called the force is a part of such a sum.
+    """
+    several: RecordingError | None = None
+    try:
+        found = match_channels(origin, table.headers, table.time_axis, settings.columns, trial)
+        if found.trials > 1 or "force" in settings.columns:
+            return found, ()
+    except SeveralTrials:
+        raise
+    except RecordingError as error:
+        several = error
+    total = total_force(table) if "force" not in settings.columns and trial is None else None
+    if total is not None:
+        if several is None and "force" in found.columns and found.columns["force"].index in total.addends:
+            raise several_columns(
+                origin, table.headers, "force", (total.column, found.columns["force"].index)
+            )
+        columns = {**settings.columns, "force": f"#{total.column + 1}"}
+        return match_channels(origin, table.headers, table.time_axis, columns), (total.note(table.headers),)
+    if several is not None:
+        raise several
+    return found, ()
 
 
 def _unread(headers: Mapping[str, Header], without_unit: Sequence[str], settings: Settings) -> list[str]:
@@ -138,12 +171,14 @@ def _unread_note(origin: Origin, header: Header, name: str) -> str:
     )
 
 
-def _others_alike(headers: Sequence[Header], matches: Mapping[str, Match], settings: Settings) -> list[str]:
-    """Return a note for each channel that is not named by the user although other columns have a unit of it too."""
+def _others_alike(
+    headers: Sequence[Header], matches: Mapping[str, Match], given: Collection[str]
+) -> list[str]:
+    """Return a note for each channel whose column is not given although other columns have a unit of it too."""
     taken = {match.index for match in matches.values()}
     notes = []
     for name in ("deflection", "force"):
-        if name in settings.columns:
+        if name in given:
             continue
         others = [
             f"{quoted(header.text)} (#{i + 1})"
@@ -239,7 +274,7 @@ def _conversions(
     origin: Origin, headers: Mapping[str, Header], units: Mapping[str, str]
 ) -> tuple[dict[str, Conversion], tuple[str, ...], dict[str, tuple[str, str]]]:
     """Return how each column becomes SI, the channels of which no unit is known, and those whose unit is none although
-    one was likely meant: what is said of it, and that unit."""
+    one was likely meant, or is a word: what is said of it, and that unit, "" for a word."""
     found: dict[str, Conversion] = {}
     without: list[str] = []
     wrong: dict[str, tuple[str, str]] = {}
@@ -257,7 +292,7 @@ def _conversions(
             if name == "pressure" and not found[name].absolute_pressure and says_absolute(header):
                 found[name] = conversion(f"{unit} abs", UNIT_OF[name])
         except UnitError as error:
-            if error.likely and name not in units:
+            if name not in units and (error.likely or is_no_unit(unit, [UNIT_OF[name]])):
                 wrong[name] = (f"{place}: {error}", error.likely)
                 continue
             kept = origin.kept_in("units", name)

@@ -66,6 +66,28 @@ SPELLINGS = {
         ("N", word): unit
         for word, unit in (("Н", "N"), ("кН", "kN"), ("мН", "mN"), ("даН", "daN"), ("кгс", "kgf"))
     },
+    **{
+        (si, word): unit
+        for si, unit, words in (
+            (
+                "s",
+                "s",
+                "sek sekunde sekunden sekunder sekund sekundy sekunnit seconde secondes seconden secondi segundo",
+            ),
+            ("s", "s", "seg segundos saniye sn másodperc"),
+            ("s", "ms", "millisekunden millisekunder millisecondes milisegundos milisaniye"),
+            ("s", "min", "minute minuten minuter minutes minutos minuti"),
+            (
+                "m",
+                "mm",
+                "millimètre millimètres milímetro milímetros milimetro milimetros millimetri milimetry milimetre",
+            ),
+            ("m", "cm", "zentimeter centimètres centímetros centimetros centimetri"),
+            ("m", "in", "zoll pouce pouces pulgada pulgadas"),
+            ("N", "N", "niuton niutony newtonů newtony"),
+        )
+        for word in words.split()
+    },
     ("N", "тс"): "tf",
     **{("s", word): unit for word, unit in (("秒", "s"), ("毫秒", "ms"), ("分", "min"))},
     **{("m", word): unit for word, unit in (("米", "m"), ("厘米", "cm"), ("毫米", "mm"), ("微米", "um"))},

@@ -3,6 +3,7 @@
 import difflib
 import math
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
@@ -257,10 +258,13 @@ def are_apart(unit: str, other: str) -> bool:
     return any(replace(conversion(unit, si), unit=other) != conversion(other, si) for si in both)
 
 
-def is_no_unit(text: str) -> bool:
-    """Whether a text is a word, and neither a unit nor one by which another unit is meant: Absolute, filtered."""
-    word = text.isalpha() and len(text) > SHORTEST_WORD and not is_unit(text)
-    return word and not any(meant_unit(text, si) or _likely(text, si) for si in QUANTITIES)
+def is_no_unit(text: str, kinds: Iterable[str] = QUANTITIES) -> bool:
+    """Whether a text is a word, and neither a unit nor one by which another unit is meant: Absolute, filtered, sum.
+
+    kinds: the SI units of what it might be a unit of
+    """
+    word = text.isalpha() and len(text) > 1 and not is_unit(text)
+    return word and not any(meant_unit(text, si) or _likely(text, si) for si in kinds)
 
 
 def meant_unit(unit: str, si: str) -> str:
@@ -279,7 +283,11 @@ def split_header(text: str) -> tuple[str, str | None]:
         found = pattern.fullmatch(plain)
         if found and found["name"]:
             more = found["more"] if pattern is _IN_BRACKETS else ""
-            return _with_what_follows(found["name"].strip(), found["unit"].strip(), more.strip())
+            name, unit = found["name"].strip(), found["unit"].strip()
+            if name.endswith(")") and unit.isalpha() and not is_unit(unit):  # Force (N) (sum)
+                inner, known = split_header(name)
+                name, unit = (f"{inner} ({unit})", known) if known in USUAL else (name, unit)
+            return _with_what_follows(name, unit, more.strip())
     within = _WITHIN_A_NAME.fullmatch(plain)
     # Other words in parentheses within a name belong to it: Force (left) filtered.
     if within and within["name"] and within["unit"] in USUAL:

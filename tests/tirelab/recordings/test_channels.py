@@ -76,7 +76,13 @@ class TestUnitsOfColumns:
         ).deflection.max() == pytest.approx(0.0025)
 
     @pytest.mark.parametrize(
-        ("unit", "said"), [("furlongs per day", "'furlongs per day'"), ("kg", "kgf"), ("KN", "kN")]
+        ("unit", "said"),
+        [
+            ("furlongs per day", "'furlongs per day'"),
+            ("kg", "kgf"),
+            ("KN", "kN"),
+            ("sum", "unknown unit 'sum' of force; write N, kN, lbf or kgf; then give it: --units force=N"),
+        ],
     )
     def test_an_unknown_or_unfit_unit_is_told(self, tmp_path: Path, unit: str, said: str) -> None:
         path = write_rows(tmp_path / "a.csv", f"time [s],deflection [cm],force [{unit}]", *loading())

@@ -151,7 +151,7 @@ def unit_below(own: str | None, cell: str) -> str | None:
     word in brackets is no unit: X(Absolute).
     """
     unit = bare_unit(cell)
-    if own and is_unit(unit) and is_no_unit(own):
+    if own and is_unit(unit) and is_no_unit(own, [si for si in QUANTITIES if measures(unit, si)]):
         return unit
     if own and unit and are_apart(own, unit):
         return f"{own} or {unit}"

@@ -353,8 +353,11 @@ def test_a_clock_of_two_parts_says_that_it_may_be_either(path: Path) -> None:
         read(path, "Time;Stroke [mm];Load [N]\n" + lines)
 
 
-def test_a_word_in_brackets_is_no_unit_beside_the_one_below(path: Path) -> None:
-    found = read(path, "Time;X(Absolute);F\ns;mm;N\n" + rows())
+@pytest.mark.parametrize(
+    "names", ["Time;X(Absolute);F", "Time;X (step);F (sum)", "Time;Stroke (abs);Load (raw)"]
+)
+def test_a_word_in_brackets_is_no_unit_beside_the_one_below(path: Path, names: str) -> None:
+    found = read(path, f"{names}\ns;mm;N\n" + rows())
     np.testing.assert_allclose(found.deflection, 1e-3 * X, atol=1e-6)
     np.testing.assert_allclose(found.force, F, atol=1e-3)
 
