@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from numbers import Real
 from pathlib import Path
 
 
@@ -79,6 +80,24 @@ def texts_of_channels(argument: str, given: object) -> Mapping[str, str]:
     raise TypeError(
         f"{argument}={str(given)[:60]!r} is of type {type(given).__name__}, no mapping; give for instance "
         f"{argument}={json.dumps(_OF_CHANNELS[argument])}"
+    )
+
+
+_OF_ALL_SAMPLES = {"radius": '"flat"', "sampling": '"10 Hz"'}
+
+
+def text_or_number(argument: str, given: object) -> str | float | None:
+    """Return an argument (radius, sampling) that is a text, a number of any library, or None.
+
+    Raise TypeError, in one sentence, for any other, such as a list.
+    """
+    if given is None or isinstance(given, (str, int, float)):
+        return given
+    if isinstance(given, Real):
+        return float(given)
+    raise TypeError(
+        f"{argument}={str(given)[:60]!r} is of type {type(given).__name__}, neither a text nor a number; give for "
+        f"instance {argument}={_OF_ALL_SAMPLES[argument]}"
     )
 
 

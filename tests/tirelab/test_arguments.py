@@ -34,6 +34,8 @@ CALLS: dict[str, tuple[Callable[..., Any], tuple[Any, ...], str]] = {
     "columns as an option": (partial(read_recording, columns="force=#3"), ("a.csv",), '{"force": "#3"}'),
     "units as an option": (partial(Recording.from_arrays, units="force=N"), ([0.0],) * 3, '{"force": "kN"}'),
     "zero as an option": (partial(Recording.from_dataframe, zero="force=5 N"), (None,), '{"force": "5 N"}'),
+    "radius as a list": (partial(read_recording, radius=[1]), ("a.csv",), 'instance radius="flat"'),
+    "sampling as a list": (partial(Recording.from_dataframe, sampling=[1]), (None,), 'sampling="10 Hz"'),
     "limits as a mapping": (
         partial(diagnose, limits={}),
         (RECORDING, TIRE),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
 from numbers import Real
 from typing import Any
 
@@ -144,12 +145,34 @@ def _with_units(origin: Origin, table: ColumnTable) -> ColumnTable:
     return ColumnTable(origin, headers, columns, table.time_axis, notes)
 
 
+def _times(values: NDArray[Any], absent: NDArray[np.bool_]) -> NDArray[Any] | None:
+    """Return objects that are dates, durations or times of day as NumPy has them; None where some are none of these."""
+    present = values[~absent]
+    if not present.size:
+        return None
+    for kind, dtype in ((datetime.datetime, "datetime64[us]"), (datetime.timedelta, "timedelta64[us]")):
+        if all(isinstance(value, kind) for value in present):
+            found = np.full(values.shape, "NaT", dtype=dtype)
+            found[~absent] = present.astype(dtype)
+            return found
+    if all(isinstance(value, datetime.time) for value in present):
+        midnight = datetime.datetime(2000, 1, 1)
+        of_day = [datetime.datetime.combine(midnight, value.replace(tzinfo=None)) for value in present]
+        found = np.full(values.shape, "NaT", dtype="timedelta64[us]")
+        found[~absent] = np.array(of_day, dtype="datetime64[us]") - np.datetime64(midnight)
+        return found
+    return None
+
+
 def _pandas_text(column: Any) -> Any:
-    """Return a column of pandas that holds text as a series of polars, any other as it is."""
+    """Return a column of pandas that holds text as a series of polars, one of times as an array, any other as it is."""
     values = np.asarray(column.to_numpy(), dtype=object) if _may_hold_text(column) else None
     if values is None:
         return column
     absent = np.asarray(column.isna(), dtype=bool)
+    times = _times(values, absent)
+    if times is not None:
+        return times
     if absent.all() or not all(isinstance(value, str) for value in values[~absent]):
         return column
     return pl.Series(
@@ -166,7 +189,7 @@ def _may_hold_text(column: Any) -> bool:
 def _pandas_table(origin: Origin, frame: Any) -> ColumnTable:
     """Return the table of a pandas frame; columns are taken by position, as names may repeat."""
     columns = [_pandas_text(frame.iloc[:, number]) for number in range(len(frame.columns))]
-    headers = [_pandas_header(text, frame.iloc[:, number]) for number, text in enumerate(frame.columns)]
+    headers = [_pandas_header(text, column) for text, column in zip(frame.columns, columns, strict=True)]
     index = frame.index
     dated = getattr(index.dtype, "kind", "") in "Mm"
     if index.name is None and not dated:
@@ -184,7 +207,7 @@ def _pandas_header(label: object, column: Any) -> Header:
         parts = [f"{parts[0]} [{parts[1]}]"]
     text = " ".join(parts)
     name, unit = split_header(text)
-    dated = getattr(column.dtype, "kind", "") in "Mm"
+    dated = getattr(column.dtype, "kind", "") in ("M", "m")
     return Header(name, "s" if dated else unit, text, dated)
 
 
@@ -201,10 +224,11 @@ def _array(column: Any) -> NDArray[Any]:
     absent = column.isna() if hasattr(column, "isna") else [value is None for value in values]
     missing = np.asarray(absent, dtype=bool)
     present = values[~missing]
-    if values.ndim == 1 and all(isinstance(v, Real) and not isinstance(v, bool) for v in present):
+    if values.ndim == 1 and all(isinstance(v, (Real, Decimal)) and not isinstance(v, bool) for v in present):
         filled = np.full(values.shape, np.nan)
         filled[~missing] = present.astype(np.float64)
         return filled
-    if values.ndim == 1 and len(present) and all(isinstance(v, datetime.datetime) for v in present):
-        return values.astype("datetime64[us]")
+    times = _times(values, missing) if values.ndim == 1 else None
+    if times is not None:
+        return times
     return values if not len(present) else present

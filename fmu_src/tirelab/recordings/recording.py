@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import check_given, refuse_unknown, texts_of_channels
+from ..errors import check_given, refuse_unknown, text_or_number, texts_of_channels
 from .choices import Choices
 from .description import facts, html_table, one_line
 from .fixed_array import fix, fixed
@@ -187,7 +187,8 @@ class Recording:
         refuse_unknown(more, Gauged.__annotations__)
         said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
         zero = texts_of_channels("zero", more.get("zero"))
-        settings = Settings(*said, radius, sampling=more.get("sampling"), zero=zero)
+        radius, sampling = text_or_number("radius", radius), text_or_number("sampling", more.get("sampling"))
+        settings = Settings(*said, radius, sampling=sampling, zero=zero)
         return _recording_of(origin, frame_table(origin, frame), settings)
 
     def __repr__(self) -> str:
@@ -281,7 +282,8 @@ def read_recording(
     refuse_unknown(more, Exported.__annotations__)
     said = (texts_of_channels("columns", columns), texts_of_channels("units", units))
     zero = texts_of_channels("zero", more.get("zero"))
-    how = Choices(*said, radius, more.get("sampling"), more.get("skip_rows"), zero=zero)
+    radius, sampling = text_or_number("radius", radius), text_or_number("sampling", more.get("sampling"))
+    how = Choices(*said, radius, sampling, more.get("skip_rows"), zero=zero)
     return understand(path, how).recording
 
 

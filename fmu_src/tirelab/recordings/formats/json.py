@@ -17,6 +17,7 @@ import polars as pl
 from ..origin import Origin
 from ..units import split_header
 from .libraries import reading_with
+from .pandas_json import frame_of_pandas
 from .parquet import frame_headers, series_values
 from .table import Columns, Header, RecordingError, Wanted, sample_place
 from .text_column import LOOKED_AT, headers_of_text
@@ -61,7 +62,11 @@ class JsonTable:
 def _frame(path: Path) -> pl.DataFrame:
     if path.suffix.lower() in LINES:
         return pl.read_ndjson(path, infer_schema_length=None)
-    held = _plain(json.loads(path.read_bytes()))
+    held = json.loads(path.read_bytes())
+    framed = frame_of_pandas(held)
+    if framed is not None:
+        return framed
+    held = _plain(held)
     lists = dict(_lists(held))
     channels = {k: v for k, v in lists.items() if k and not any(isinstance(x, (dict, list)) for x in v)}
     longest, many = max(Counter(map(len, channels.values())).items(), default=(0, 0))

@@ -42,6 +42,26 @@ WRITTEN: dict[str, Callable[[], str]] = {
     "numbered rows.json": lambda: json.dumps(dict(enumerate(ROWS, 100))),
     "rows inside.json": lambda: json.dumps({"test": {"read": ROWS}}),
     "names above.json": lambda: json.dumps([list(LISTS), *(list(row.values()) for row in ROWS)]),
+    "split.json": lambda: json.dumps(
+        {
+            "columns": list(LISTS),
+            "index": list(range(SAMPLES)),
+            "data": [list(row.values()) for row in ROWS],
+        }
+    ),
+    "table.json": lambda: json.dumps(
+        {
+            "schema": {
+                "fields": [
+                    {"name": "index", "type": "integer"},
+                    *({"name": n, "type": "number"} for n in LISTS),
+                ],
+                "primaryKey": ["index"],
+                "pandas_version": "1.4.0",
+            },
+            "data": [{"index": i, **row} for i, row in enumerate(ROWS)],
+        }
+    ),
     "lines.jsonl": lambda: "\n".join(map(json.dumps, ROWS)),
     "lines.ndjson": lambda: "\n".join(map(json.dumps, ROWS)) + "\n",
 }
