@@ -30,6 +30,9 @@ EVENLY = 1.5
 """Steps of what a drive moves differ by less than this factor, but for a few."""
 
 
+MOST_ANEW = 0.01
+"""Part of its steps in which a clock begins anew at most."""
+
 A_RATE = 0.99
 """Part of the variance of a recorded velocity that the rate of the recorded travel explains."""
 
@@ -38,11 +41,15 @@ SAME_SIZE = 0.02
 
 
 def rises(values: FloatArray) -> bool:
-    """Whether numbers rise from each to the next, evenly enough for a clock; one by one they count the rows."""
+    """Whether numbers rise from each to the next, evenly enough for a clock; one by one they count the rows.
+
+    A logger that was started anew begins anew, a few times in a file.
+    """
     steps = np.diff(values[np.isfinite(values)])
-    if not len(steps) or np.all(steps == 1.0):
+    on = steps[steps > 0.0]
+    if not len(on) or np.all(on == 1.0) or len(steps) - len(on) > MOST_ANEW * len(steps):
         return False
-    return bool(steps.min() > 0.0) and bool(np.quantile(steps, 0.9) < 3.0 * np.median(steps))
+    return bool(np.quantile(on, 0.9) < 3.0 * np.median(on))
 
 
 def _is_index(headers: Sequence[Header], index: int, values: FloatArray) -> bool:

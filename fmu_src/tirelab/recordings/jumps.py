@@ -65,8 +65,11 @@ def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> t
     deflection goes on.
     """
     with np.errstate(all="ignore"):
-        alone = np.setdiff1d(_alone(force), _alone(deflection))
+        along = _alone(deflection)
+        alone = np.setdiff1d(_alone(force), along)
     if alone.size < 2 or np.ptp(force[alone]) > 0.0:
+        alone = np.setdiff1d(_far_and_equal(force), along)
+    if alone.size < 2:
         return ()
     others = np.delete(force, alone)
     mark = float(force[alone[0]])
@@ -77,6 +80,26 @@ def mark_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> t
         "that is a mark for no reading, write nothing there, and the rows are skipped"
     )
     return ((int(alone[0]), said),)
+
+
+MOST_MARKED = 0.1
+"""Part of the samples that may have a mark for no reading: with more blanks a recording is refused."""
+
+
+def _far_and_equal(force: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the samples (k,) of one number exactly that is as far from all others as these reach, for a few samples at
+    a time; none where there is no such number.
+    """
+    for mark in (float(force.max()), float(force.min())):
+        at = np.flatnonzero(force == mark)
+        others = np.delete(force, at)
+        if not 2 <= at.size <= MOST_MARKED * force.size:
+            continue
+        beyond = min(abs(mark - float(others.max())), abs(mark - float(others.min())))
+        runs = np.split(at, np.flatnonzero(np.diff(at) > 1) + 1)
+        if beyond > float(np.ptp(others)) > 0.0 and len(runs) > 1 and max(map(len, runs)) <= AROUND:
+            return at
+    return np.empty(0, dtype=np.intp)
 
 
 STEP = 4.0

@@ -21,8 +21,8 @@ FloatArray = NDArray[np.float64]
 MOST_BLANK = 0.1
 """The share of rows that may lack a value; with more, the columns were not recorded together."""
 
-NOT_MEASURED = 1.79e308
-"""A number from here on, the largest of its kind but for its last digits, says that nothing was measured."""
+NOT_MEASURED = ((9.8e37, 3.5e38), (1.79e308, np.inf))
+"""Numbers within these limits say that nothing was measured: 9.9E37 of SCPI-1999, the largest single and double."""
 
 MOST_NAMED = 12
 """How many rows a note names one by one."""
@@ -85,8 +85,10 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
         raise RecordingError(f"{origin}: has a header and no rows below it; record again, or export it anew")
     # Some programs write the largest number there is where nothing was measured.
     for name, column in values.items():
-        if NOT_MEASURED <= column.max() < np.inf:
-            values[name] = np.where(column >= NOT_MEASURED, np.nan, column)
+        if max(np.fmax.reduce(column), -np.fmin.reduce(column)) >= NOT_MEASURED[0][0]:
+            size = np.abs(column)
+            marks = [(least <= size) & (size < most) for least, most in NOT_MEASURED]
+            values[name] = np.where(np.logical_or(*marks), np.nan, column)
     values, kept, notes = _without_blanks(origin, columns, values)
     for which in (_repeated, _before_the_clock, _held, _lost, _read_falsely):
         skipped, said = which(values)

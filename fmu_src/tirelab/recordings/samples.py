@@ -145,11 +145,26 @@ def check_time(time: FloatArray) -> None:
     still = int(np.count_nonzero(steps == 0.0))
     if steps.min() == 0.0 and still > COARSE * len(steps):
         known = still < len(steps)
-        rate = len(time) / float(time[-1] - time[0] + steps[steps > 0.0].min()) if known else 0.0
+        rate = _rate_of_changes(time, steps) if known else 0.0
         said = f"{rate:.6g}Hz" if known else "RATE"
         what += f", as do {still - 1} others: the clock is coarser than the samples; if these are evenly spaced, give "
         raise SampleFault(late, "time", what + f"their rate: --sampling {said}")
     raise SampleFault(late, "time", what + "; sort the rows by time, and keep one of each")
+
+
+def _rate_of_changes(time: FloatArray, steps: FloatArray) -> float:
+    """Return how many samples there are in a second of a clock that stands still between its changes [Hz].
+
+    Before its first change and after its last one it may have stood for a part of its step.
+    """
+    changes = np.flatnonzero(steps > 0.0)
+    if len(changes) < 2:
+        return len(time) / float(time[-1] - time[0] + steps[changes[0]])
+    length = float(time[changes[-1]] - time[changes[0]])
+    rate = float(changes[-1] - changes[0]) / length
+    # each of the two changes may belong to the sample before or after it
+    rounded = (float(f"{rate:.{digits}g}") for digits in range(1, 7))
+    return next((near for near in rounded if abs(near - rate) * length < 2.0), rate)
 
 
 def check_values(name: str, values: FloatArray) -> None:

@@ -26,6 +26,7 @@ CHANNELS = ("time", "deflection", "radius", "force")
 dirty = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 WORDS_WITH_A_MEANING = {"na", "null", "none", "flat", "infinite", "∞", "sep"}
+WORDS_WITH_A_MEANING |= {"nil", "ol", "ovl", "ovld", "ofl", "err", "error", "invalid", "overload", "overflow"}
 
 
 def means_nothing(text: str) -> bool:
@@ -43,7 +44,8 @@ not_numbers = st.one_of(
     ),
     st.text(st.characters(categories=["Lu", "Ll", "So", "Sm"]), min_size=1, max_size=8),
 ).filter(means_nothing)
-blanks = st.sampled_from(["", " ", "nan", "NaN", "NA", "n/a", "#N/A", "null", "None", '""'])
+LEFT_OUT = ["-", "---", "#NV", "<NA>", "OVERLOAD", "OL", "Err"]
+blanks = st.sampled_from(["", " ", "nan", "NaN", "NA", "n/a", "#N/A", "null", "None", '""', *LEFT_OUT])
 
 
 def clean_rows() -> list[list[str]]:

@@ -38,6 +38,14 @@ def test_what_a_scale_weighs_is_the_force_and_the_steps_of_a_motor_are_not(tmp_p
     assert proposed(path) == ["--columns", "force=#5", "--units", "time=ms,force=gf"]
 
 
+def test_the_clock_of_a_logger_that_was_started_anew_is_the_time(tmp_path: Path) -> None:
+    """Not the force: its board began to count again, in the middle of the file."""
+    _, deflection, force = loading(400)
+    clock = 100.0 * (np.arange(400) % 200)
+    path = write_rows(tmp_path / "a.csv", "a,b,c", clock, 10.0 * deflection, force)
+    assert proposed(path)[1] == "time=#1,deflection=#2,force=#3"
+
+
 def test_of_many_forces_and_gauges_the_two_that_stand_together_are_guessed(tmp_path: Path) -> None:
     """A wall under two loads with gauges on it: no name says which is the travel, and a command can be copied."""
     _, deflection, force = loading()

@@ -324,6 +324,14 @@ def test_a_mark_for_no_reading_in_the_force_is_doubted_at_its_first_row(mark: fl
     assert f"{mark:.6g} N at 3 samples" in said
 
 
+@pytest.mark.parametrize("mark", [-999.0, 32767.0])
+def test_marks_at_more_samples_than_are_lost_readings_are_doubted_too(mark: float) -> None:
+    often = range(25, CYCLES.size, 25)
+    ((at, said),) = mark_doubt(CYCLES, marked(*often, mark=mark))
+    assert at == 25
+    assert f"{mark:.6g} N at {len(often)} samples" in said
+
+
 @pytest.mark.parametrize(
     "force",
     [

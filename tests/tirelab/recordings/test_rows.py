@@ -51,6 +51,14 @@ def test_empty_rows_are_no_rows() -> None:
     assert len(rows.values["time"]) == 7
 
 
+@pytest.mark.parametrize("mark", [9.9e37, 9.91e37, -9.9e37, 3.402823e38, 1.797693134862315e308])
+def test_the_numbers_that_instruments_write_for_no_reading_are_blank(mark: float) -> None:
+    force = np.arange(40.0)
+    force[[5, 7]] = mark, NAN
+    rows = rows_of(time=np.arange(40.0), force=force)
+    assert rows.notes == ("skipped for want of force: row 7, row 9",)
+
+
 def test_many_skipped_rows_are_counted() -> None:
     missing = range(0, 400, 16)
     rows = rows_of(time=np.arange(400.0), force=with_gaps(400, *missing))

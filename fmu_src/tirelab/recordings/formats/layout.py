@@ -29,7 +29,7 @@ from .table import (
     with_cell_units,
     with_dates,
 )
-from .table_search import find_table, is_units, is_value, states_units, unit_below
+from .table_search import bare_unit, find_table, is_units, is_value, states_units, unit_below
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
@@ -196,6 +196,9 @@ def _names(
             False,
             (f"row {start} names {unheld} too, of which the rows hold nothing",),
         )
+    if len(above) == len(header) and is_units(above):
+        named = [f"column {n} [{bare_unit(unit)}]" for n, unit in enumerate(above, 1)]
+        return named, False, (f"the row of units above the numbers, row {start}, names no columns",)
     if len(above) > 1:
         unnamed = (
             f"row {start} names {len(above)} columns and the rows hold {len(header)}: its names are not taken"

@@ -16,16 +16,18 @@ FloatArray = NDArray[np.float64]
 BLANK_WORDS = frozenset(
     {
         *("", "nan", "-nan", "na", "n/a", "n.a.", "#n/a", "null", "none", "--", "---"),
-        *("nan(ind)", "-nan(ind)", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan"),
+        *("nan(ind)", "-nan(ind)", "1.#ind", "-1.#ind", "1.#qnan", "-1.#qnan", "1.#inf", "-1.#inf"),
+        *("-", "?", "<na>", "nil", "#nv", "#n/d", "#n/b", "invalid", "err", "error"),
+        *("ol", "ovl", "ovld", "ofl", "overload", "overflow", "overrange", "over range"),
     }
 )
-"""What a cell may hold, in lower case, to say that nothing was measured."""
+"""What a cell may hold, in lower case, to say that nothing was measured, or that it was beyond the range."""
 
 TRUTH_WORDS = frozenset({"true", "false"})
 """What a cell may hold, in lower case, that is neither a number nor the name of a column: a switch."""
 
 
-_EXCEL_ERRORS = ("#n/a", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
+_EXCEL_ERRORS = ("#n/a", "#nv", "#n/d", "#n/b", "#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!")
 
 
 class RecordingError(TirelabError):

@@ -16,7 +16,10 @@ from .table import BLANK_WORDS, is_comment
 SEPARATORS = "\t;,|"
 
 SEARCHED = 300
-"""Most lines that are searched for the beginning of the table."""
+"""Lines that are searched at once for the beginning of the table."""
+
+AGAIN = 20
+"""Lines at the end of those that are searched again with the next ones: the names stand above the numbers."""
 
 LONGEST_ROW = 8
 """A row between quotes that takes more lines than this is a quote left open above the table."""
@@ -60,15 +63,12 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     without numbers, in which most cells name a channel or state a unit; where none does, the nearest above the run. So
     is that one where it is a cell wider or narrower and names as many.
     """
-    best: tuple[tuple[int, bool], list[_Row], int, str] | None = None
-    for candidate in separator or SEPARATORS:
-        rows = list(_rows(lines[start : start + SEARCHED], candidate))
-        length, first = _longest_run(rows)
-        # Of two that part as many rows, one may stand within a text: it does not part the header as it parts them.
-        headed = any(not row.numeric and len(row.cells) == len(rows[first].cells) for row in rows[:first])
-        if length and (best is None or (length, headed) > best[0]):
-            best = ((length, headed), rows, first, candidate)
-    if best is None:
+    for searched in range(start, max(len(lines), start + 1), SEARCHED - AGAIN):
+        best = _best_run(lines[searched : searched + SEARCHED], separator or SEPARATORS)
+        if best is not None:
+            start = searched
+            break
+    else:
         return None
     (length, _), rows, first, found = best
     width = len(rows[first].cells)
@@ -91,6 +91,24 @@ def find_table(lines: Sequence[str], start: int, separator: str | None) -> Table
     while begin and rows[begin - 1].numeric and len(rows[begin - 1].cells) == width:
         begin -= 1
     return TablePlace(found, start + rows[begin].line)
+
+
+_Run = tuple[tuple[int, bool], list[_Row], int, str]
+"""How long a run of rows of numbers is and whether it has a row of text of its width above, all rows, the first of the
+run, and the separator."""
+
+
+def _best_run(lines: Sequence[str], separators: str) -> _Run | None:
+    """Return the longest run of rows of numbers of one width among some lines; None where there is no such row."""
+    best: _Run | None = None
+    for candidate in separators:
+        rows = list(_rows(lines, candidate))
+        length, first = _longest_run(rows)
+        # Of two that part as many rows, one may stand within a text: it does not part the header as it parts them.
+        headed = any(not row.numeric and len(row.cells) == len(rows[first].cells) for row in rows[:first])
+        if length and (best is None or (length, headed) > best[0]):
+            best = ((length, headed), rows, first, candidate)
+    return best
 
 
 def _nearly_as_wide(texts: Sequence[_Row], rows: Sequence[_Row], first: int) -> list[_Row]:

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tirelab.recordings.formats.layout import find_layout
-from tirelab.recordings.recording import read_recording
+from tirelab.recordings.recording import RecordingError, read_recording
 
 
 def test_a_header_that_names_more_columns_than_the_rows_hold(tmp_path: Path) -> None:
@@ -17,6 +18,28 @@ def test_a_header_that_names_more_columns_than_the_rows_hold(tmp_path: Path) -> 
     np.testing.assert_allclose(found.force, 2.0 * np.arange(40))
     np.testing.assert_allclose(found.deflection, 5e-4 * np.arange(40))
     assert "row 1 names 'Velocity' and 'Thermocouple' too, of which the rows hold nothing" in found.notes
+
+
+def test_units_above_the_numbers_without_names_are_taken(tmp_path: Path) -> None:
+    path = tmp_path / "a.log"
+    path.write_text("ms,mm,N\n" + "".join(f"{100 * i},{0.5 * i:g},{2.0 * i:g}\n" for i in range(40)))
+    with pytest.raises(RecordingError, match=r"name it with --columns time=#1,deflection=#2,force=#3$"):
+        read_recording(path, radius="flat")
+    columns = {"time": "#1", "deflection": "#2", "force": "#3"}
+    found = read_recording(path, radius="flat", columns=columns)
+    np.testing.assert_allclose(found.time, 0.1 * np.arange(40))
+    np.testing.assert_allclose(found.deflection, 5e-4 * np.arange(40))
+
+
+@pytest.mark.parametrize("lines", [10, 299, 600])
+def test_a_table_below_many_lines_about_the_test_is_found(tmp_path: Path, lines: int) -> None:
+    path = tmp_path / "a.csv"
+    above = "".join(f"Parameter {i};{1.5 * i:g}\n" for i in range(lines))
+    rows = "".join(f"{0.1 * i:g};{0.5 * i:g};{2.0 * i:g}\n" for i in range(400))
+    path.write_text(f"{above}time [s];stroke [mm];force [N]\n{rows}")
+    found = read_recording(path, radius="flat")
+    np.testing.assert_allclose(found.force, 2.0 * np.arange(400))
+    assert len(found.provenance) > 1
 
 
 def test_a_header_that_names_fewer_columns_than_the_rows_hold_is_said(tmp_path: Path) -> None:
