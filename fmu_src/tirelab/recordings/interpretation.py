@@ -20,7 +20,7 @@ from .plausibility import Doubts, doubts_of, too_deep
 from .reading_plan import Plan
 from .rounded_clock import lost_in_single
 from .rows import Rows, complete_rows
-from .samples import descends, gap_notes, over_midnight, over_the_top
+from .samples import HALF_DAY, descends, gap_notes, over_midnight, over_the_top
 from .thousands_doubt import thousands_doubt
 from .units import STANDARD_ATMOSPHERE, Conversion
 
@@ -159,6 +159,10 @@ def _time_from_first(
     time, midnight = over_midnight(time)
     if midnight is not None:
         notes.append(f"the clock passes midnight at {rows.place(midnight)}: a day added from there on")
+    elif read is not None and plan.headers["time"].dated:
+        time, twelve = over_midnight(time, HALF_DAY)
+        if twelve is not None:
+            notes.append(f"the clock passes twelve at {rows.place(twelve)}: twelve hours added from there on")
     if read is not None and not plan.headers["time"].dated:
         time, anew = over_the_top(time, plan.conversions["time"].multiplied)
         if anew is not None:

@@ -20,7 +20,7 @@ COARSE = 0.05
 MOST_TESTS = 50
 """A clock that goes back so often at most may have begun anew with each of several tests."""
 
-DAY, LONGEST_PAUSE = 86_400.0, 3600.0
+DAY, HALF_DAY, LONGEST_PAUSE = 86_400.0, 43_200.0, 3600.0
 """A clock without a date begins anew after so long [s]; what is recorded does not stop for longer than the latter."""
 
 COUNTER_BITS = (16, 32)
@@ -91,15 +91,18 @@ def gap_notes(time: FloatArray) -> list[str]:
     return [f"{which} {plain(steps[longest], 6)} s after {plain(time[longest], 6)} s"]
 
 
-def over_midnight(time: FloatArray) -> tuple[FloatArray, int | None]:
-    """Return time [s] with a day added after its one jump back of about a day, and the sample that comes next."""
+def over_midnight(time: FloatArray, turn: float = DAY) -> tuple[FloatArray, int | None]:
+    """Return time [s] with a day added after its one jump back of about a day, and the sample that comes next.
+
+    turn: of the clock [s], a day or half of one
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         steps = np.diff(time)
     back = np.flatnonzero(steps < 0.0)
-    if len(back) != 1 or not 0.0 < float(steps[back[0]]) + DAY < LONGEST_PAUSE:
+    if len(back) != 1 or not 0.0 < float(steps[back[0]]) + turn < LONGEST_PAUSE:
         return time, None
     first = int(back[0]) + 1
-    return np.concatenate([time[:first], time[first:] + DAY]), first
+    return np.concatenate([time[:first], time[first:] + turn]), first
 
 
 def over_the_top(time: FloatArray, one: float) -> tuple[FloatArray, int | None]:

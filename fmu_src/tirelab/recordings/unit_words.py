@@ -102,6 +102,7 @@ LIKELY = {
     **{("N", word): "tf" for word in ("t", "ton", "tons", "tonne", "tonnes", "tonf")},
     ("Pa", "kgf"): "kgf/cm^2",
     ("s", "hz"): "s, the time of each row",
+    ("s", "m"): "min",
 }
 
 CASED = ("daN", "gf", "tf", "um", "hr", "hPa", *(unit for units in COMMON.values() for unit in units))
@@ -109,3 +110,30 @@ CASED = ("daN", "gf", "tf", "um", "hr", "hPa", *(unit for units in COMMON.values
 
 MICRO_LOST = re.compile(r"(?:[^\x00-\x7f]|\?){1,3}(?P<unit>[ms])")
 """A unit whose sign for a millionth was lost between two encodings: ?m."""
+
+_SO_MANY = re.compile(
+    r"x?\s*(?P<value>\d+(?:\.\d+)?)(?:\s*/\s*(?P<by>[1-9]\d*))?\s*\*?\s*(?P<unit>[^\W\d].*)", re.ASCII
+)
+_TIMES = re.compile(
+    r"(?P<unit>[^\W\d].*?)\s*[\[(]?\s*[x*\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*"
+    r"(?P<value>\d+(?:\.\d+)?)\s*[\])]?(?P<by>)",
+    re.ASCII,
+)
+_PART_OF_ONE = re.compile(r"(?P<value>)(?P<unit>[^\W\d]\w*)\s*/\s*(?P<by>[1-9]\d*)", re.ASCII)
+POWER = re.compile(
+    r"x?\s*10\s*(?:\^|\*\*)\s*(?P<power>[+-]?\d{1,2})\s*[*\N{MIDDLE DOT}]?\s*(?P<unit>[^\W\d].*)", re.ASCII
+)
+"""A unit that stands for a power of ten of another one: 10^-3 m."""
+
+
+def so_many(unit: str) -> str:
+    """Return a unit that stands for so many of another one as a calibration, `10 ms`, of `1/100 mm`, `ms/10` and
+    `10^-3 m` too."""
+    power = POWER.fullmatch(unit)
+    if power:
+        return f"{10.0 ** int(power['power']):g} {power['unit']}"
+    found = _SO_MANY.fullmatch(unit) or _PART_OF_ONE.fullmatch(unit) or _TIMES.fullmatch(unit)
+    if found is None:
+        return ""
+    value = float(found["value"] or 1.0) / float(found["by"] or 1.0)
+    return f"{value:g} {found['unit']}"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
-from .unit_words import CASED, COMMON, LIKELY, LOOKALIKES, MICRO_LOST, SPELLINGS, USUAL
+from .unit_words import CASED, COMMON, LIKELY, LOOKALIKES, MICRO_LOST, POWER, SPELLINGS, USUAL, so_many
 from .vocabulary import is_measured
 
 if TYPE_CHECKING:
@@ -48,19 +48,10 @@ _DOT = re.compile(r"(?<=[Nf])\.(?=(?:[cm]?m|s|in|ft)\b)")
 _GAUGE = re.compile(
     r"^(?P<unit>psi|bar|mbar|Pa|hPa|kPa|MPa|atm)[\s_]*(?:\(?(?P<kind>g|ga|gauge|a|abs|absolute)\)?)$"
 )
-_SO_MANY = re.compile(
-    r"x?\s*(?P<value>\d+(?:\.\d+)?)(?:\s*/\s*(?P<by>[1-9]\d*))?\s*\*?\s*(?P<unit>[^\W\d].*)", re.ASCII
-)
-_TIMES = re.compile(
-    r"(?P<unit>[^\W\d].*?)\s*[\[(]?\s*[x*\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*"
-    r"(?P<value>\d+(?:\.\d+)?)\s*[\])]?(?P<by>)",
-    re.ASCII,
-)
 _FACTOR = re.compile(r"[\[(]?\s*(?:[x*/\N{MULTIPLICATION SIGN}\N{MIDDLE DOT}]\s*\d|10(?:\^|\*\*|e)).*")
 """What stands behind a unit that is not that of the numbers: x10, *1000, (x10), /10, 10^3."""
 _SCALED = re.compile(r"(?P<name>.*\w)(?:\s+x|\s*[*\N{MULTIPLICATION SIGN}])\s*(?P<by>10+)")
 """A name with a factor: Force x10."""
-_PART_OF_ONE = re.compile(r"(?P<value>)(?P<unit>[^\W\d]\w*)\s*/\s*(?P<by>[1-9]\d*)", re.ASCII)
 MAGNITUDE = re.compile(r"^(?P<value>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*)$")
 _IN_BRACKETS = re.compile(r"(?P<name>[^\[\]]*)\[(?P<unit>[^\[\]]*)\](?P<more>.*)")
 _IN_PARENTHESES = re.compile(r"(?P<name>.*)\((?P<unit>[^()]*(?:\([^()]*\))?)\)")
@@ -372,25 +363,20 @@ def _likely(unit: str, si: str, known: bool = False) -> str:
         return hint if hint and measures(hint, si) else ""
     if any(map(str.isdigit, unit)):
         # Behind a force it may be what the load cell bears: Load (500 N).
-        many = _so_many(unit) if si != "N" or unit.startswith("x") or not unit[0].isdigit() else ""
+        many = (
+            so_many(unit)
+            if si != "N" or POWER.match(unit) or unit.startswith("x") or not unit[0].isdigit()
+            else ""
+        )
         return many if many and measures(many.split(" ", 1)[1], si) else ""
     names = {name.lower(): name for name in COMMON[si]}
     near = difflib.get_close_matches(unit.lower(), names, n=1, cutoff=0.5)
     return names[near[0]] if near else ""
 
 
-def _so_many(unit: str) -> str:
-    """Return a unit that stands for so many of another one as a calibration, `10 ms`, of `1/100 mm` and `ms/10` too."""
-    found = _SO_MANY.fullmatch(unit) or _PART_OF_ONE.fullmatch(unit) or _TIMES.fullmatch(unit)
-    if found is None:
-        return ""
-    value = float(found["value"] or 1.0) / float(found["by"] or 1.0)
-    return f"{value:g} {found['unit']}"
-
-
 def _advice(unit: str, si: str, known: bool = False) -> str:
     meant = LIKELY.get((si, unit.lower())) or _likely(unit, si, known)
-    if meant and meant == _so_many(unit):
+    if meant and meant == so_many(unit):
         return f"does 1 in the column stand for {meant}?"
     if meant:
         return f"did you mean {meant}?"

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tirelab.recordings.samples import (
     GAP,
+    HALF_DAY,
     LARGEST_PLAUSIBLE,
     SampleFault,
     check_time,
@@ -109,6 +110,11 @@ class TestClock:
     def test_a_day_is_added_after_midnight(self) -> None:
         time, first = over_midnight(np.array([86_398.0, 86_399.0, 0.0, 1.0]))
         np.testing.assert_array_equal(time, [86_398.0, 86_399.0, 86_400.0, 86_401.0])
+        assert first == 2
+
+    def test_half_a_day_is_added_after_twelve(self) -> None:
+        time, first = over_midnight(np.array([43_198.0, 43_199.0, 0.0, 1.0]), HALF_DAY)
+        np.testing.assert_array_equal(time, [43_198.0, 43_199.0, 43_200.0, 43_201.0])
         assert first == 2
 
     @pytest.mark.parametrize(

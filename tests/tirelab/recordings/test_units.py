@@ -317,7 +317,9 @@ def test_what_stands_behind_the_brackets_of_a_unit(text: str, name: str, unit: s
     assert split_header(text) == (name, unit)
 
 
-@pytest.mark.parametrize("unit", ["N x10", "N *10", "N (x10)", "N\N{MULTIPLICATION SIGN}10", "x10 N"])
+@pytest.mark.parametrize(
+    "unit", ["N x10", "N *10", "N (x10)", "N\N{MULTIPLICATION SIGN}10", "x10 N", "10^1 N"]
+)
 def test_a_factor_behind_a_unit_is_asked_about(unit: str) -> None:
     with pytest.raises(UnitError, match="does 1 in the column stand for 10 N") as caught:
         conversion(unit, "N")

@@ -337,7 +337,8 @@ class _Cells:
         elif mark != self.mark:
             raise RecordingError(
                 f"{self.path.name}, row {line}, column {quoted(header)}: {quoted(text)} has the decimal mark "
-                f"{mark!r} and row {self.mark_line} has {self.mark!r}; write all numbers with one mark"
+                f"{mark!r} and row {self.mark_line} has {self.mark!r}; write all numbers with one mark, without marks "
+                "between thousands"
             )
 
     def decimal_mark(self) -> str:

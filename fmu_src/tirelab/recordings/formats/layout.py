@@ -39,6 +39,9 @@ SAMPLE = 500
 
 _UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.IGNORECASE)
 
+_MARKED = re.compile(r"^\s*(?:[%!;*>]+|//+)\s*(?=\w)")
+"""What programs write before a line that holds no numbers, as others write #."""
+
 BELOW_NAMES = 3
 """Most rows of text between the names of the columns and the numbers: units, addresses, remarks."""
 
@@ -244,6 +247,10 @@ def above_names(
     """
     if any(header.unit for header in headers):
         return headers, ()
+    right_above = next(csv.reader(lines[-1:], delimiter=separator), [])
+    if len(right_above) == len(headers) > 1 and all(map(str.strip, right_above)) and is_units(right_above):
+        named = tuple(_with_unit(h, cell) for h, cell in zip(headers, right_above, strict=True))
+        return named, ("units taken from the row above the names",)
     for line in reversed(lines):
         if _UNITS_CALLED.match(line) is None:
             continue
@@ -343,11 +350,14 @@ def _preamble(lines: Sequence[str]) -> tuple[int, str | None]:
 
 
 def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
-    """The cells of a comment right above the numbers, where some programs put the header."""
-    if not preamble or not is_comment(preamble[-1]):
+    """The cells of a comment right above the numbers, where some programs put the header; of two, names and units."""
+    comments = [line.strip().lstrip("# \t") for line in preamble[-2:] if is_comment(line)]
+    if not comments or not is_comment(preamble[-1]):
         return []
-    text = preamble[-1].strip().lstrip("# ")
-    return next(csv.reader([text], delimiter=separator), [])
+    *above, cells = (next(csv.reader([text], delimiter=separator), []) for text in comments)
+    if above and len(above[0]) == len(cells) and is_units(cells):
+        return [f"{name.strip()} [{bare_unit(unit)}]" for name, unit in zip(above[0], cells, strict=True)]
+    return cells
 
 
 def _words_above(preamble: Sequence[str], separator: str) -> list[str]:
@@ -364,6 +374,7 @@ def _all_numeric(cells: Sequence[str]) -> bool:
 
 
 def _header(cell: str, number: int) -> Header:
+    cell = _MARKED.sub("", cell) if number == 1 else cell
     name, unit = split_header(cell)
     return Header(name or f"#{number}", unit, " ".join(cell.split()) or f"#{number}")
 

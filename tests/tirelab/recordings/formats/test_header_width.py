@@ -42,6 +42,40 @@ def test_a_table_below_many_lines_about_the_test_is_found(tmp_path: Path, lines:
     assert len(found.provenance) > 1
 
 
+@pytest.mark.parametrize("mark", ["#", "# ", "%", "% ", "//", "! ", "; ", "* ", ">> "])
+def test_what_stands_before_the_names_is_no_part_of_the_first(tmp_path: Path, mark: str) -> None:
+    path = tmp_path / "a.txt"
+    rows = "".join(f"{0.1 * i:g}\t{0.5 * i:g}\t{2.0 * i:g}\n" for i in range(40))
+    path.write_text(f"{mark}time [s]\tstroke [mm]\tforce [N]\n{rows}")
+    np.testing.assert_allclose(read_recording(path, radius="flat").time, 0.1 * np.arange(40))
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "s,mm,kN\nTime,Stroke,Load\n",
+        "# Time,Stroke,Load\n# s,mm,kN\n",
+        "# Time,Stroke,Load\n# [s],[mm],[kN]\n",
+    ],
+)
+def test_units_above_the_names_and_in_a_second_comment_are_taken(tmp_path: Path, names: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(names + "".join(f"{0.1 * i:g},{0.5 * i:g},{2.0 * i:g}\n" for i in range(40)))
+    found = read_recording(path, radius="flat")
+    np.testing.assert_allclose(found.force, 2000.0 * np.arange(40))
+    np.testing.assert_allclose(found.deflection, 5e-4 * np.arange(40))
+
+
+def test_a_clock_of_twelve_hours_goes_on_after_twelve(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    clock = [f"{12 if i < 30 else 1}:{(30 + i) % 60:02d}:00" for i in range(60)]
+    rows = "".join(f"{clock[i]},{0.5 * i:g},{2.0 * i:g}\n" for i in range(60))
+    path.write_text("Time,stroke [mm],force [N]\n" + rows)
+    found = read_recording(path, radius="flat")
+    np.testing.assert_allclose(found.time, 60.0 * np.arange(60))
+    assert "the clock passes twelve at row 32: twelve hours added from there on" in found.notes
+
+
 def test_a_header_that_names_fewer_columns_than_the_rows_hold_is_said(tmp_path: Path) -> None:
     rows = "".join(f"{0.1 * i:g},{2.0 * i:g},{0.5 * i:g}\n" for i in range(40))
     path = tmp_path / "a.csv"
