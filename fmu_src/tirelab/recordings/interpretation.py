@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
@@ -14,7 +15,7 @@ from .clock_doubt import clock_doubt
 from .counting import Counted, count_from_zero
 from .epochs import began
 from .formats import Columns, Header, RecordingError
-from .formats.table import quoted
+from .formats.table import listed, quoted
 from .pieces import Piece, samples_within
 from .plausibility import Doubts, doubts_of, too_deep
 from .reading_plan import Plan
@@ -57,10 +58,14 @@ class Interpreted:
         """Return the error for one sample, with its place in the file."""
         return self.rows.error(index + self.first, channel, what)
 
-    def above(self, index: int) -> str:
-        """Return how the part of the file above one sample is named."""
-        first, last = (self.rows.place(i + self.first).split()[-1] for i in (0, max(index - 1, 0)))
-        return f"{self.rows.origin}@{first}:{last}"
+    def tests(self) -> str:
+        """Return how the parts of the file are named between which the time goes back, some of many."""
+        time = self.values["time"]
+        ends = [0, *(np.flatnonzero(np.diff(time) < 0.0) + 1).tolist(), time.size]
+        rows = [self.rows.place(end + self.first).split()[-1] for end in ends[:-1]]
+        last = [self.rows.place(end - 1 + self.first).split()[-1] for end in ends[1:]]
+        named = [f"{self.rows.origin}@{a}:{b}" for a, b in zip(rows, last, strict=True)]
+        return listed([shlex.quote(name) for name in named], most=4)
 
     def check_loading(self) -> None:
         """Refuse a deflection that never changes or is deeper than a wheel, and signs that are in doubt."""

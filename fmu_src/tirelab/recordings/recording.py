@@ -357,11 +357,7 @@ def _checked(found: Interpreted, plan: Plan, name: str, source: Path | None) -> 
             history=_history(found.before, name),
         )
     except SampleFault as fault:
-        part = (
-            f"; if another test begins here, read one of them: {found.above(fault.index)}"
-            if fault.anew
-            else ""
-        )
+        part = f"; if another test begins here, read one of them: {found.tests()}" if fault.anew else ""
         raise found.error(fault.index, fault.channel, fault.what + part) from None
     found.check_loading()
     return recording

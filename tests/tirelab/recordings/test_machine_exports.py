@@ -206,7 +206,9 @@ class TestNothingIsLostWithoutAWord:
         m = pressed()
         path = tmp_path / "a.csv"
         path.write_text(HEAD + "\n" + 2 * (table((m.time, mm(m), m.force)) + HEAD + "\n"))
-        with pytest.raises(RecordingError, match=r"row 403.*goes back.*read one of them: a\.csv@2:401"):
+        with pytest.raises(
+            RecordingError, match=r"row 403.*goes back.*read one of them: a\.csv@2:401, a\.csv@403:802"
+        ):
             read_recording(path, radius="flat")
         assert_the_motion(read_recording(f"{path}@2:401", radius="flat"), m)
         assert_the_motion(read_recording(f"{path}@403:802", radius="flat"), m)
