@@ -132,6 +132,9 @@ _GERMAN_SYMBOL = {"deflection": "s"}
 _NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
 
 
+_BETWEEN_WORDS = re.compile(r"[/|()_\s]+")
+_JOINED = re.compile(r"(?<=[a-z])(?=[A-Z][a-z])")
+
 # A controller puts the number of its input before every name: Ch 1 Time, C_1_Temps.
 _OF_INPUT = re.compile(r"(?:c|ch|chan|channel|kanal)[ ._-]*\d+[ ._:-]+(?P<name>.+)", re.IGNORECASE)
 
@@ -263,6 +266,15 @@ def may_be_foreign(header: Header, channel: Channel) -> bool:
     )
 
 
+def may_be_in_two_languages(header: Header, channel: Channel) -> bool:
+    """Whether the name is several words, each of them one for the channel: `Zeit / Time`, `时间 Time`."""
+    return any(
+        len(parts := [part for part in _BETWEEN_WORDS.split(name) if part]) > 1
+        and all(channel.name in (_NAMED.get(_words(part)), foreign_channel(part)) for part in parts)
+        for name in _names_in_fitting_units(header, channel)
+    )
+
+
 def may_be_second(header: Header, channel: Channel) -> bool:
     """Whether the name is one for the channel where no column has a better one: `Fx` where there is no `Fz`."""
     return any(second_channel(name) == channel.name for name in _names_in_fitting_units(header, channel))
@@ -290,6 +302,11 @@ def may_be_counted(header: Header, channel: Channel) -> bool:
         return False
     bare = Header(name, header.unit, header.text, header.dated)
     return may_be(bare, channel) or may_be_foreign(bare, channel)
+
+
+def in_words(header: Header) -> Header:
+    """Return a column with spaces between the words that its name joins: `ElapsedTime`, `TestForce`."""
+    return Header(_JOINED.sub(" ", header.name), header.unit, header.text, header.dated)
 
 
 def without_source(header: Header) -> Header:

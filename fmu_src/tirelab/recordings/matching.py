@@ -8,10 +8,12 @@ from .channels import (
     CHANNELS,
     Channel,
     bare_name,
+    in_words,
     known_channel,
     may_be,
     may_be_counted,
     may_be_foreign,
+    may_be_in_two_languages,
     may_be_qualified,
     may_be_second,
     may_be_symbol,
@@ -211,13 +213,18 @@ def _beside_dates(free: Sequence[tuple[int, Header]], channel: Channel, found: l
 def _otherwise_named(free: Sequence[tuple[int, Header]], channel: Channel) -> list[int]:
     """Return the columns that may hold a channel by the best of the names that are not our own."""
     sourceless = [(i, without_source(header)) for i, header in free]
+    spelled = [(i, in_words(header)) for i, header in free]
     for named, columns in (
         (may_be_foreign, free),
+        (may_be_in_two_languages, free),
         (may_be_symbol, free),
         (may_be_counted, free),
         (may_be, sourceless),
         (may_be_foreign, sourceless),
         (may_be_qualified, free),
+        (may_be, spelled),
+        (may_be_foreign, spelled),
+        (may_be_qualified, spelled),
         (may_be_second, free),
     ):
         found = [i for i, header in columns if named(header, channel)]

@@ -96,6 +96,23 @@ class TestColumns:
         np.testing.assert_allclose(found.force, force, rtol=1e-5)
         np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
 
+    @pytest.mark.parametrize(
+        "names",
+        [
+            "Zeit / Time [s],Weg / Displacement [cm],Kraft / Force [N]",
+            "时间 Time (s),位移 Displacement (cm),力 Force (N)",
+            "Time_Zeit_s,Displacement_Weg_cm,Force_Kraft_N",
+            "ElapsedTime [s],AxialDisplacement [cm],AxialForce [N]",
+            "TestTime(s),CrossheadDisp(cm),TestForce(N)",
+        ],
+    )
+    def test_names_in_two_languages_and_words_that_are_joined(self, tmp_path: Path, names: str) -> None:
+        time, deflection, force = loading()
+        found = read_recording(write_rows(tmp_path / "a.csv", names, time, deflection, force), radius="flat")
+        np.testing.assert_allclose(found.time, time)
+        np.testing.assert_allclose(found.deflection, deflection / 100.0, rtol=1e-5)
+        np.testing.assert_allclose(found.force, force, rtol=1e-5)
+
     def test_our_own_names_go_before_foreign_ones_with_a_source_too(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         header = "time [s],Position(A:Position) (mm),Displacement(A:Digital position) (cm),Load(A:Load) (N)"
