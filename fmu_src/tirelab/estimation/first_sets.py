@@ -132,8 +132,7 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
     """The same after one fit of the saturated model; white: whether the noise is known to have no memory."""
     equations = normal_equations(signatures, dataset.misfit)
     left = dataset.apart(_left_by_all(equations, dataset.misfit))
-    misfits = dataset.apart(dataset.misfit)
-    noise_left = partial(_noise_left, dataset.experiments, equations, left, misfits)
+    noise_left = partial(_noise_left, dataset, equations, left)
     noises = [noise_left(number, white=white) for number in range(len(left))]
     series = [e for e in dataset.with_noise(noises).experiments if e.reading.told_by_series]
     if series and not white:
@@ -154,10 +153,9 @@ def _left_by_saturated(dataset: Dataset, signatures: Sequence[Signature], *, whi
 
 
 def _noise_left(
-    experiments: Sequence[Experiment],
+    dataset: Dataset,
     equations: NormalEquations,
     left: Sequence[FloatArray],
-    misfits: Sequence[FloatArray],
     number: int,
     series: Sequence[Experiment] = (),
     *,
@@ -165,10 +163,9 @@ def _noise_left(
 ) -> Noise:
     """Return the noise [N] of what the saturated model left of one experiment, with its memory in blocks.
 
-    left, misfits: of each experiment, in units of its noise; series: those whose noise has a memory
-    white: known to have none
+    left: of each experiment, in units of its noise; series: those whose noise has a memory; white: known to have none
     """
-    e, own = experiments[number], left[number]
+    e, own, misfit = dataset.experiments[number], left[number], dataset.apart(dataset.misfit)[number]
     x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
     (surface,) = surface_numbers([e.surface_radius[e.counts]])
     driven = Driven(e.interval, x, rate, acceleration, surface)
@@ -176,7 +173,7 @@ def _noise_left(
     known = [replace(n, level=n.level / e.noise, hum=n.hum / e.noise) for n in (*over, e.reading.of_mains)]
     others = partial(_left_in_one, equations, [r.size for r in left], number)
     noise = white_noise_of(own, driven, known) if white else noise_of(own, driven, others, known)
-    noise = noise_in_misfit(noise, misfits[number], driven, known)
+    noise = noise_in_misfit(noise, misfit, driven, known)
     return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT), hum=e.noise * noise.hum)
 
 
