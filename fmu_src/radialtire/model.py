@@ -168,10 +168,6 @@ class TireModel:
         order = [PLACES.index(effect.place) for effect, _ in self.effects]
         if order != sorted(order):
             raise ParameterError(f"the effects {', '.join(names)} must stand in the order of the signal path")
-        if self.curve is not None and (giving := [e.name for e, _ in self.effects if e.place == "series"]):
-            raise ParameterError(
-                f"{giving[0]} gives way to the force of the law, not to that of a curve: keep one of them"
-            )
         checked = tuple((effect, effect.checked(values)) for effect, values in self.effects)
         object.__setattr__(self, "effects", checked)
 

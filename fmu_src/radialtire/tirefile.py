@@ -142,6 +142,10 @@ def from_text(text: str) -> TireModel:
     except ParameterError as error:
         raise TireFileError(str(error)) from None
     _check_tested_range(tire)
+    if tire.curve is not None and (giving := [e.name for e, _ in tire.effects if e.place == "series"]):
+        raise TireFileError(
+            f"{giving[0]} gives way to the force of the law, not to that of a curve: keep one of them"
+        )
     return tire
 
 
