@@ -18,7 +18,7 @@ from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
 from ..preprocessing.levels import NoiseProfile, levels_by_load, levels_by_state, white_level
-from ..preprocessing.noise import Noise, noise_in_misfit, noise_of, resting, white_noise_of
+from ..preprocessing.noise import Noise, noise_of, resting, white_noise_of
 from ..preprocessing.samples import Recorded, surface_numbers
 from ..regressors.dataset import STEPS_LEFT, Dataset, Experiment, Samples, dataset_of
 from ..regressors.signature import (
@@ -165,7 +165,7 @@ def _noise_left(
 
     left: of each experiment, in units of its noise; series: those whose noise has a memory; white: known to have none
     """
-    e, own, misfit = dataset.experiments[number], left[number], dataset.apart(dataset.misfit)[number]
+    e, own = dataset.experiments[number], left[number]
     x, rate, acceleration = (v[e.counts] for v in (e.deflection, e.rate, e.acceleration))
     (surface,) = surface_numbers([e.surface_radius[e.counts]])
     driven = Driven(e.interval, x, rate, acceleration, surface)
@@ -173,7 +173,6 @@ def _noise_left(
     known = [replace(n, level=n.level / e.noise, hum=n.hum / e.noise) for n in (*over, e.reading.of_mains)]
     others = partial(_left_in_one, equations, [r.size for r in left], number)
     noise = white_noise_of(own, driven, known) if white else noise_of(own, driven, others, known)
-    noise = noise_in_misfit(noise, misfit, driven, known)
     return replace(noise, level=e.noise * max(noise.level, LEAST_LEFT), hum=e.noise * noise.hum)
 
 

@@ -173,16 +173,6 @@ def white_noise_of(residual: FloatArray, driven: Driven, known: Sequence[Noise] 
     return _beside_hum(residual, driven, known, lambda rest: _levels_of(rest, driven).white(driven))
 
 
-def noise_in_misfit(noise: Noise, misfit: FloatArray, driven: Driven, known: Sequence[Noise] = ()) -> Noise:
-    """Return a noise of what a model leaves of a misfit (n,), or the white one of the misfit itself where that varies
-    less over the memory: a noise is in both, and a model may be rougher than what it follows. known: see `noise_of`
-    """
-    _, slow = _slow_lags(driven)
-    shown = level_of(misfit, noise.memory, slow)
-    part = min(float(known_part(slow.sum() / noise.memory)), 1.0 / STAYS)
-    return noise if part * noise.level <= shown else white_noise_of(misfit, driven, known)
-
-
 @dataclass(frozen=True)
 class _Levels:
     """Levels of a residual over doubled lags, `values`, at the samples where the motion is slow enough for all lags;

@@ -308,9 +308,6 @@ def test_what_no_effect_explains_in_one_recording_weighs_alike_in_all(
     """Levels of what the saturated model leaves, over the noise of the readings."""
     left = itertools.cycle(levels)
     monkeypatch.setattr(first_sets, "noise_of", lambda *_: Noise(next(left), 1))
-    monkeypatch.setattr(
-        first_sets, "noise_in_misfit", lambda noise, *_: noise
-    )  # the misfit has no such levels
     found = explain_misfit(RIDES, TireModel(), ["viscous_damping"], lambda stage: None)
     read = [e.noise for e in dataset_of(RIDES, TireModel()).experiments]
     noises = [e.noise for e in found.model.fit.problem.dataset.experiments]

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter
 from tirelab.preprocessing.driven import Driven
-from tirelab.preprocessing.noise import Noise, noise_in_misfit, noise_left, noise_of
+from tirelab.preprocessing.noise import noise_left, noise_of
 
 FloatArray = NDArray[np.float64]
 
@@ -110,21 +110,3 @@ def test_a_noise_as_quick_as_the_motion_of_a_mass_is_seen(seed: int) -> None:
     found = noise_left(filtered(seed + 90, 0.4), shaken(seed))
     assert found is not None
     assert found.level == pytest.approx(1.0, rel=0.15)
-
-
-@pytest.mark.parametrize("memory", [1, 4])
-def test_what_a_model_is_rougher_by_than_the_misfit_is_no_noise(memory: int) -> None:
-    """A smooth misfit beside white noise of 1 N does not vary by 30 N within a few samples, whatever a model does."""
-    motion = ride(2)
-    misfit = np.random.default_rng(2).normal(size=COUNT) + 300.0 * (motion.deflection - 0.01) / 3e-3
-    found = noise_in_misfit(Noise(30.0, memory), misfit, motion)
-    assert found.memory == 1
-    assert found.level == pytest.approx(1.0, rel=0.15)
-
-
-@pytest.mark.parametrize("cut_off", [0.15, 0.25, 0.35])
-def test_a_noise_that_the_misfit_has_is_kept(cut_off: float) -> None:
-    motion, noise = ride(4), filtered(4, cut_off)
-    found = noise_left(noise, motion)
-    assert found is not None
-    assert noise_in_misfit(found, noise + 40.0 * (motion.deflection - 0.01) / 3e-3, motion) == found
