@@ -365,7 +365,7 @@ def _fit_neighbours(sets: FittedSets, names: frozenset[str]) -> None:
         sets.remove(base, name)
     if len(names) < MOST_EFFECTS:
         _add_promising(sets, names, names, PROMISING)
-        # What a law may follow is not known from its slopes at the baseline's alone.
+        # Its slopes at the baseline do not tell all that a law may follow.
         if LAW in sets.signatures.keys() - names and not sets.spent:
             sets.add(base, LAW)
     for name in sorted(names):
