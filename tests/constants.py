@@ -182,7 +182,6 @@ EFFORT = (
     "estimation/ranking.EVALUATION",
     "estimation/explanation.FIRST_PART",
     "estimation/ranking.USUAL_MOVED",
-    "estimation/additions.SIZES",
     "estimation/ranking.GAIN_ERROR",
     "estimation/ranking.MOST_FITS",
     "estimation/ranking.MOST_WORK",

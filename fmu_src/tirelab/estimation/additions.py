@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +13,10 @@ from ..regressors.dataset import Dataset
 from ..regressors.draws import strengthened
 from ..regressors.signature import LAW, Signature
 from ..selection.search import Discrepancy
-from .evidence import PASSES
 from .fit import Fit
-from .problem import law_groups, law_start, with_readings
+from .problem import law_start, with_readings
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int_]
 
 
 def _beside(slopes: FloatArray, variance: float) -> Callable[[FloatArray], FloatArray]:
@@ -88,60 +85,26 @@ def not_followed(signature: Signature, explained: FloatArray, base: Fit, varianc
     return 0.5 * float(left @ left) / variance
 
 
-SIZES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
-"""Sizes of a candidate's columns that are tried, over what the base leaves."""
-
-
 def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:
     """Return the gain in log likelihood that each candidate, added to a fit, should bring by its signature.
 
-    It is the marginal likelihood linearised about the fit, whose parameters are refitted, at the best of a few sizes. A
-    refitted law has a size for each group of its parameters, as in a fit, and promises nothing at least.
+    It is the marginal likelihood linearised about the fit, whose parameters are refitted, at the best of a few sizes.
     """
-    _, variance = discrepancy.profile(base.beyond_drift)
+    before, variance = discrepancy.profile(base.beyond_drift)
     beside = _beside(base.slopes, variance)
     left = float(np.sqrt(base.beyond_drift / base.residual.size))
     found = []
     for signature in signatures:
         columns = beside(signature.columns)
-        promise = _Promise(columns.T @ columns, columns.T @ base.residual, base.beyond_drift, discrepancy)
-        if signature.name == LAW:
-            groups = np.append(0, law_groups(base.problem.dataset))  # its mean is nothing
-            found.append(promise.of_groups(groups, left))
-        else:
-            found.append(max(promise.of(size * left * np.ones(columns.shape[1])) for size in SIZES))
+        gram, moment = columns.T @ columns, columns.T @ base.residual
+        values, vectors = np.linalg.eigh(gram)
+        values, turned = np.maximum(values, 0.0), vectors.T @ moment
+        best = -np.inf
+        for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
+            z = size * turned / (values * size**2 + variance)
+            power = base.beyond_drift - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
+            after, new = discrepancy.profile(power)
+            determinant = float(np.log1p(values * size**2 / new).sum())
+            best = max(best, after - before - 0.5 * determinant - 0.5 * float(z @ z))
+        found.append(best)
     return found
-
-
-@dataclass(frozen=True)
-class _Promise:
-    """What columns promise: gram (r, r), moment (r,): their normal equations beside the base; power: sum of squares
-    that it leaves.
-    """
-
-    gram: FloatArray
-    moment: FloatArray
-    power: float
-    discrepancy: Discrepancy
-
-    def of(self, sizes: FloatArray) -> float:
-        """Return the gain in log likelihood with columns of these sizes (r,)."""
-        before, variance = self.discrepancy.profile(self.power)
-        values, vectors = np.linalg.eigh(self.gram * np.outer(sizes, sizes))
-        values, turned = np.maximum(values, 0.0), vectors.T @ (sizes * self.moment)
-        z = turned / (values + variance)
-        after, new = self.discrepancy.profile(self.power - 2.0 * float(z @ turned) + float(z @ (values * z)))
-        determinant = float(np.log1p(values / new).sum())
-        return after - before - 0.5 * determinant - 0.5 * float(z @ z)
-
-    def of_groups(self, groups: IntArray, left: float) -> float:
-        """Return the gain with the best size of each group (r,) of columns, none or one of SIZES times `left`, found
-        one after the other.
-        """
-        best, sizes = 0.0, np.zeros(groups.size)
-        for group in [*np.unique(groups[groups > 0])] * PASSES:
-            for size in SIZES:
-                tried = np.where(groups == group, size * left, sizes)
-                if (gain := self.of(tried)) > best:
-                    best, sizes = gain, tried
-        return best

@@ -256,11 +256,6 @@ def law_start(dataset: Dataset) -> tuple[float, ...]:
     return (0.0,) * len(_parameters_of_law(dataset))
 
 
-def law_groups(dataset: Dataset) -> NDArray[np.int_]:
-    """Return the numbers of the groups (k,) of the law's parameters, in the order of the columns of its signature."""
-    return np.array([p.group for p in _parameters_of_law(dataset)], dtype=np.int_)
-
-
 def _parameters_of_law(dataset: Dataset) -> tuple[FreeParameter, ...]:
     return parameters_of_law(
         law_surfaces(dataset), preload_spread(dataset), gap_spread(dataset), kink_spread(dataset)

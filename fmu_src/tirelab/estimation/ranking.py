@@ -156,8 +156,7 @@ class FittedSets:
         before, self.assessed_at = self.assessed, self.count
         self._assess(self.best_fit)
         # What is slow in the rest of the best set is no noise where another set explains it.
-        quieter = (fit for fit in self.fits.values() if self._would_win(fit))
-        least = min(quieter, key=lambda fit: fit.slow, default=None)
+        least = min(filter(self._would_win, self.fits.values()), key=lambda fit: fit.slow, default=None)
         if least is not None:
             self._assess(least)
             self._assess(self.best_fit)
@@ -189,9 +188,8 @@ class FittedSets:
         return max(self.fits, key=self.posterior)
 
     def fit(self, starts: Sequence[Values], variance: float) -> None:
-        """Fit a set from several starts; what was fitted from these already is not fitted again."""
-        begun = (tuple(tuple(start.items()) for start in starts), variance, self.discrepancy)
-        if begun in self.begun:
+        """Fit a set from several starts, once from the same ones."""
+        if (begun := (*(tuple(s.items()) for s in starts), variance, self.discrepancy)) in self.begun:
             return
         self.begun.add(begun)
         key = frozenset(starts[0])
@@ -273,8 +271,7 @@ def ranked(sets: FittedSets, alike: Callable[[str], Sequence[str]]) -> Ranking:
         open_sets = [n for n in sets.fits if n not in sets.followed and sets.posterior(n) > best - LOST]
         if not open_sets:
             break
-        names = max(open_sets, key=sets.posterior)
-        sets.followed.add(names)
+        sets.followed.add(names := max(open_sets, key=sets.posterior))
         _fit_neighbours(sets, names)
         if sets.update_discrepancy():
             sets.followed.clear()
@@ -349,11 +346,11 @@ def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
     for _ in range(CORRECTIONS):
         dataset = fit.problem.dataset
         left_out = samples.left_out(dataset, fit.tire)
-        pairs = zip(left_out, dataset.experiments, strict=True)
-        new = dataset.stacked([own - e.left_out for own, e in pairs])
+        new = dataset.stacked(
+            [own - e.left_out for own, e in zip(left_out, dataset.experiments, strict=True)]
+        )
         if new @ new < LEAST_GAIN * fit.variance:
             break
-        # Which optional parameters are worth their while was decided before: a distortion does not ask again.
         fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, np.inf)
     return fit
 
@@ -365,7 +362,7 @@ def _fit_neighbours(sets: FittedSets, names: frozenset[str]) -> None:
         sets.remove(base, name)
     if len(names) < MOST_EFFECTS:
         _add_promising(sets, names, names, PROMISING)
-        # Its slopes at the baseline do not tell all that a law may follow.
+        # Its groups of parameters have scales of their own, which no prediction with one size knows.
         if LAW in sets.signatures.keys() - names and not sets.spent:
             sets.add(base, LAW)
     for name in sorted(names):
@@ -383,7 +380,7 @@ def _add_promising(sets: FittedSets, names: frozenset[str], beside: frozenset[st
     gains = predicted_gains([signatures[n] for n in (*others, *replaced)], base, sets.discrepancy)
     # A fit may gain far more than was predicted, so a prediction is compared with that of the effect it would replace.
     wanted = min([best + PRIOR_ODDS - sets.posterior(names), *gains[len(others) :]])
-    # The law has a size for each of its groups, and promises more for it: it is one more, and takes no other's place.
+    # What the law promises is known of one size for all its groups: it is one more, and takes no other's place.
     law_last = sorted(zip(gains, others, strict=False), key=lambda pair: (pair[1] == LAW, -pair[0]))
     for gain, name in (p for i, p in enumerate(law_last) if i < most or p[1] == LAW):
         if gain > wanted - GAIN_ERROR and not sets.spent:

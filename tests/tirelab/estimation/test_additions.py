@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.estimation.additions import SIZES, _Promise, additions, not_followed, predicted_gains
+from tirelab.estimation.additions import additions, not_followed, predicted_gains
 from tirelab.estimation.fit import fitted
 from tirelab.regressors.dataset import Dataset
 from tirelab.regressors.signature import Signature
-from tirelab.selection.search import Discrepancy, beside_noise
+from tirelab.selection.search import Discrepancy
 
 
 def test_the_largest_promise_is_that_of_what_is_there(
@@ -19,22 +19,6 @@ def test_the_largest_promise_is_that_of_what_is_there(
     assert max(found, key=found.__getitem__) == "viscous_damping"
     # A law of the deflection follows nothing of a force of the rate, and may not gain by that.
     assert found["recalibration"] < 0.1 * found["viscous_damping"]
-
-
-@pytest.mark.parametrize("power", [0.0, 1.0])
-def test_each_group_of_columns_has_the_size_that_explains_its_part(power: float) -> None:
-    """Two columns across each other, in the first of which nothing is, in the second 40 times the noise. The second one
-    brings what it does alone with the best size; the first one adds nothing, nor does it cost a determinant.
-    """
-    rows = 400
-    columns = np.linalg.qr(np.random.default_rng(1).normal(size=(rows, 2)))[0]
-    moment = np.array([0.0, 40.0 * power])
-    law = beside_noise(rows)
-    promise = _Promise(columns.T @ columns, moment, float(rows + moment @ moment), law)
-    alone = _Promise(np.eye(1), moment[1:], float(rows + moment @ moment), law)
-    both = promise.of_groups(np.array([1, 2]), 10.0)
-    assert both == pytest.approx(max(0.0, *(alone.of(np.array([10.0 * size])) for size in SIZES)), abs=1e-9)
-    assert (both > 0.0) is (power > 0.0)
 
 
 def test_a_candidate_begins_at_the_drawn_form_and_size_that_come_nearest(
