@@ -193,11 +193,10 @@ class FittedSets:
             return
         self.begun.add(begun)
         key = frozenset(starts[0])
-        best = self.fits[self.best()] if self.fits else None
+        best = self.best_fit if self.fits else None
         wanted = -np.inf if best is None else best.log_likelihood + PRIOR_ODDS * (len(key) - len(best.names))
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
-        found = predicted(self.held_out, found)
-        self.count += 1
+        found, self.count = predicted(self.held_out, found), self.count + 1
         self.work += found.evaluations * (EVALUATION + found.residual.size)
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
@@ -314,13 +313,13 @@ def _in_order(fits: Iterable[Fit]) -> tuple[Fit, ...]:
 def with_parts(ranking: Ranking, fit: Fit) -> Ranking:
     """Return the ranking with each set fitted that lacks one candidate of a fit, to know what the candidate explains.
 
-    The search may have ended before it fitted them. Where it did fit them, the same ranking is returned.
+    The search may have ended before it fitted them; else the same ranking is returned.
     """
     found = []
     for name in fit.names:
         if ranking.of(frozenset(fit.names) - {name}) is None:
-            start = {n: v for n, v in fit.values.items() if n != name}
-            less = fitted(fit.problem.dataset, [start], ranking.discrepancy, fit.variance, -np.inf)
+            start = [{n: v for n, v in fit.values.items() if n != name}]
+            less = fitted(fit.problem.dataset, start, ranking.discrepancy, fit.variance, -np.inf)
             found.append(predicted(ranking.held_out, less))
     return replace(ranking, fits=_in_order([*ranking.fits, *found])) if found else ranking
 
@@ -346,9 +345,8 @@ def _corrected(fit: Fit, samples: Samples, discrepancy: Discrepancy) -> Fit:
     for _ in range(CORRECTIONS):
         dataset = fit.problem.dataset
         left_out = samples.left_out(dataset, fit.tire)
-        new = dataset.stacked(
-            [own - e.left_out for own, e in zip(left_out, dataset.experiments, strict=True)]
-        )
+        pairs = zip(left_out, dataset.experiments, strict=True)
+        new = dataset.stacked([own - e.left_out for own, e in pairs])
         if new @ new < LEAST_GAIN * fit.variance:
             break
         fit = fitted(dataset.corrected(left_out), [fit.values], discrepancy, fit.variance, np.inf)
