@@ -19,7 +19,8 @@ from tirelab.recordings.jumps import (
 )
 from tirelab.recordings.recording import understand
 
-CYCLES = 5e-3 * np.sin(2.0 * np.pi * (TIME := np.arange(0.0, 20.0, 0.01)))
+TIME = np.arange(0.0, 20.0, 0.01)
+CYCLES = 5e-3 * np.sin(2.0 * np.pi * TIME)
 
 
 def test_two_runs_in_one_table_are_doubted() -> None:
