@@ -128,12 +128,13 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
 
     def of(scales: FloatArray) -> tuple[float, FloatArray, int, FloatArray]:
         wide = np.concatenate([width, np.repeat(np.where(scales > none, scales, 0.0), counts)])
-        gained, determinant, given_way = _linear_gain(
-            gram * np.outer(wide, wide), moment * wide, pull, variances
-        )
+        free = np.flatnonzero(wide)  # without the columns of a drift that is none
+        scaled = gram[np.ix_(free, free)] * np.outer(wide[free], wide[free])
+        gained, determinant, given_way = _linear_gain(scaled, moment[free] * wide[free], pull[free], variances)
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
-        return float(values[best]) - _cost_of_scales(scales), scales, best, given_way(best) * wide
+        wide[free] *= given_way(best)
+        return float(values[best]) - _cost_of_scales(scales), scales, best, wide
 
     together = [np.append(none, np.minimum(scale, most)) for scale in (FORM_SCALES if fit.forms else (1.0,))]
     best = max((of(scales) for scales in together), key=lambda f: f[0])
