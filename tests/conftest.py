@@ -14,6 +14,9 @@ if sys.prefix != sys.base_prefix:  # as the program does: nothing outside the ch
 # Every core has a worker of its own: second threads of the linear algebra would spin there while they wait.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# A program that a test starts would else compile all of the package anew; what it keeps is within the checkout.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
 # The ordinary run draws the same examples each time and shows the first that fails as it was drawn.
 settings.register_profile(
     "steady", derandomize=True, deadline=None, print_blob=True, phases=(Phase.explicit, Phase.generate)

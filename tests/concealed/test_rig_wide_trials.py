@@ -41,7 +41,9 @@ def test_wide_kinds_are_never_drawn_unasked() -> None:
     assert sum(KINDS.values()) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("kind", WIDE_KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=pytest.mark.slow) if k == "set" else k for k in WIDE_KINDS]
+)
 def test_the_same_seed_gives_the_same_wide_trial(drawn: Drawn, kind: str) -> None:
     one = drawn(kind)[0]
     other = draw(one.seed, kind=kind)

@@ -253,6 +253,7 @@ def test_ctrl_c_ends_the_program_with_one_line_and_no_files(damped_run: Any, tmp
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_the_report_says_how_to_repeat_the_run(damped_run: Any) -> None:
     """Its command, run again, writes the same bytes, and its hashes are those of the files."""
     page = (damped_run.out / "report.html").read_text(encoding="utf-8")

@@ -34,6 +34,7 @@ def warming(temperature: FloatArray) -> Verdict:
     return diagnose(replace(pressed(course), temperature=temperature), catalogue=NAMES)
 
 
+@pytest.mark.slow
 def test_the_temperature_of_a_room_contradicts_a_tire_that_warms() -> None:
     found = warming(293.0 + 0.05 * np.random.default_rng(2).standard_normal(TIME.size))
     channel = found.contradiction
@@ -69,6 +70,7 @@ def test_a_pressure_that_was_typed_in_refutes_no_leak() -> None:
     assert found.contradiction is None
 
 
+@pytest.mark.slow
 def test_what_was_recorded_before_a_held_out_part_is_taken_without_the_channel_too() -> None:
     course = 1.0 + 0.05 * (1.0 - np.exp(-TIME / 20.0))
     room = replace(

@@ -58,11 +58,13 @@ def test_the_one_of_another_tire_is_named_first() -> None:
     assert found.as_if == "It is as if the force of soft were 20 % less, by another pressure or tire."
 
 
+@pytest.mark.slow
 def test_of_two_nobody_can_tell_which() -> None:
     verdict = verdict_on(pressed("a", 1), pressed("soft", 3, 440.0))
     assert verdict.summary.startswith("Recordings a and soft contradict each other.")
 
 
+@pytest.mark.slow
 def test_a_force_with_another_zero_is_told() -> None:
     r = pressed("b", 2)
     shifted = Recording("b", r.time, r.deflection, r.surface_radius, r.force + 60.0)
@@ -89,11 +91,13 @@ def test_the_one_with_another_zero_is_named_and_what_explains_the_others(damping
     assert "as if the zero of the deflection of b were 1.0" in found.as_if
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("coefficient", [550.0, 440.0])
 def test_recordings_of_one_tire_do_not_contradict_each_other(coefficient: float) -> None:
     assert verdict_on(pressed("a", 1, coefficient), pressed("b", 2, coefficient)).contradiction is None
 
 
+@pytest.mark.slow
 def test_what_no_effect_explains_in_all_of_them_is_no_contradiction() -> None:
     several = []
     for name, seed in (("a", 1), ("b", 2), ("c", 3)):
@@ -105,6 +109,7 @@ def test_what_no_effect_explains_in_all_of_them_is_no_contradiction() -> None:
     assert verdict.contradiction is None
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_driven_otherwise_contradicts_nothing() -> None:
     """Something that no effect of the catalogue explains may show at another speed alone."""
     quick = pressed("quick", 3, period=2.0)
@@ -138,6 +143,7 @@ def test_its_message_says_what_to_do() -> None:
     )
 
 
+@pytest.mark.slow
 def test_of_parts_without_air_no_pressure_is_spoken_of() -> None:
     spring = TireModel(PowerLaw(550.0, 1.42), tested_range=None, inflated=False)
     found = diagnose(
@@ -233,6 +239,7 @@ def test_no_factor_turns_a_force_round() -> None:
     assert verdict.contradiction is None or "less" not in verdict.contradiction.as_if
 
 
+@pytest.mark.slow
 def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None:
     """The dampers of both are alike and found. The law is 5 % more than believed in one and 5 % less in the other."""
     fitted, kept = (
@@ -249,6 +256,7 @@ def test_a_held_out_recording_that_refuses_one_of_two_effects_is_named() -> None
     assert verdict.summary.startswith("Recording other contradicts a.")
 
 
+@pytest.mark.slow
 def test_what_lies_deeper_than_the_others_reached_contradicts_nothing() -> None:
     """One pull, 550 N/cm^1.42 as far as it is fitted, to 24 mm, and a tenth stiffer beyond: nothing else showed that.
 

@@ -56,6 +56,7 @@ def test_a_ceiling_above_the_largest_force_of_the_baseline_is_found(zero):
     assert limit == pytest.approx(0.9 * force.max() + zero, abs=2.0)
 
 
+@pytest.mark.slow
 def test_what_another_effect_follows_to_a_few_percent_passes_for_that_one_and_the_rest_is_told():
     """A lag of the gauge is damping in proportion to the stiffness; the rest is within the errors of its form."""
     catalogue = [n for n in catalogue_names() if n != "viscous_damping"]
@@ -147,6 +148,7 @@ def test_another_tire_is_a_recalibration():
     assert pytest.approx(1.08 * 550.9 * 1.2**1.40, rel=3e-3) == 1.2**B * A
 
 
+@pytest.mark.slow
 def test_at_one_rate_the_loops_are_alternatives(one_rate_verdict):
     verdict = one_rate_verdict
     named = {frozenset(verdict.names), *(frozenset(r.names) for r in verdict.alternatives)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from radialtire import PowerLaw, TireModel
 from rivals import rivals
 from tirelab.diagnosis.diagnose import diagnose
@@ -33,6 +34,7 @@ def test_no_bottoming_is_made_of_a_clipped_reading() -> None:
     assert first_screen.next_step(told).why.endswith("record with more travel.")
 
 
+@pytest.mark.slow
 def test_noise_of_the_reading_is_nothing_unknown() -> None:
     """A mass of 15 kg through the corners of fast triangles, read with 6 um of noise.
 
@@ -52,6 +54,7 @@ def test_noise_of_the_reading_is_nothing_unknown() -> None:
     assert verdict.fit.after > 1.5 * verdict.fit.noise > verdict.fit.left
 
 
+@pytest.mark.slow
 def test_a_short_disturbance_is_not_called_nothing() -> None:
     """20 cycles of exactly that tire with 4 N of noise; once, for 0.6 s of 200, a cable pulls with 20 N."""
     rng = np.random.default_rng(2)

@@ -204,6 +204,7 @@ def above_and_onto_a_rim(noise: float) -> list[Recording]:
     ]
 
 
+@pytest.mark.slow
 def test_what_shows_in_one_recording_alone_is_not_held_out_as_a_whole():
     """A rim that one ride hits cannot be fitted to a ride that ends above it, however alike their depths are."""
     verdict = diagnose(above_and_onto_a_rim(noise=5.0), catalogue=rivals("bottoming"))

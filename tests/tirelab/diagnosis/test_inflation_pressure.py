@@ -46,6 +46,7 @@ def test_the_pressure_is_named_and_a_pressure_that_was_not_recorded_is_foretold(
     assert float(np.sqrt(np.mean((other.force - simulate(found.tire, other)) ** 2))) < 6.0
 
 
+@pytest.mark.slow
 def test_without_the_channel_nothing_is_said_of_the_pressure() -> None:
     without = [replace(r, pressure=None) for r in RECORDINGS]
     found = diagnose(without, LAW, catalogue=["inflation_pressure", "recalibration"])

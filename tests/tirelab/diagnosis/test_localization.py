@@ -66,6 +66,7 @@ def test_a_knee_is_found_at_large_deflections():
     assert spans[0].mean_residual > 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("colour", "recordings"), [(0.0, 40), (0.6, 40), (0.95, 100)])
 def test_noise_alone_is_not_located(colour, recordings):
     # Counted sample by sample, AR(1) noise of 0.95 would make dozens of places. Promised: 1 in 1000 recordings.

@@ -45,6 +45,7 @@ def judged(kept: Recording, *fitted: Recording) -> Verdict:
     return diagnose(fitted, TIRE, held_out=[kept], catalogue=FEW)
 
 
+@pytest.mark.slow
 def test_what_shows_at_another_speed_alone_leaves_the_verdict_open() -> None:
     slow = driven("slow", 20.0), driven("slower", 40.0)
     verdict = judged(driven("quick", 2.0, ripple=RIPPLE), *slow)

@@ -95,6 +95,7 @@ def diagnosed_of(believed: Believed, *names: str) -> Verdict:
 BESIDE = ("recalibration", "viscous_damping", "rate_independent_hysteresis")
 
 
+@pytest.mark.slow
 def test_an_offset_before_a_spring_with_play_is_found_with_the_spring(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -26,6 +26,7 @@ def crushed(deepest: tuple[float, ...]) -> Recording:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deepest", [(8.0, 12.0, 16.0, 16.0), (12.0,)])
 def test_what_stays_is_named_with_its_share(deepest: tuple[float, ...]) -> None:
     verdict = diagnose([crushed(deepest)], TireModel())

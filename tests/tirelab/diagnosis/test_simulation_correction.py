@@ -113,6 +113,7 @@ def test_a_verdict_beside_a_simulation_that_no_law_stands_for_says_what_it_could
     assert "of the simulation, more than is left here: an effect before the simulation" in verdict.summary
 
 
+@pytest.mark.slow
 def test_where_no_more_than_noise_is_left_nothing_is_doubted_of_the_simulation() -> None:
     found = believed_of([driven(1)], [])
     assert found is not None

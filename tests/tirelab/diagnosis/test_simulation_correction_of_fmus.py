@@ -106,6 +106,7 @@ def names(done: Done) -> list[str]:
     return [effect["name"] for effect in done.content["verdict"]["effects"]]
 
 
+@pytest.mark.slow
 def test_an_offset_before_the_simulation_is_found_and_given_to_it(shifted: Done) -> None:
     assert names(shifted) == ["deflection_offset"]
     entry = shifted.content["correction"]
@@ -119,6 +120,7 @@ def test_an_offset_before_the_simulation_is_found_and_given_to_it(shifted: Done)
     assert offset == pytest.approx(OFFSET, rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_drift_beside_the_simulation_is_found_and_added(drifting: Done) -> None:
     assert names(drifting) == ["force_drift"]
     assert drifting.content["correction"]["moves"] is False

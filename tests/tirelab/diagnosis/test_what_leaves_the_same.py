@@ -64,6 +64,7 @@ def test_a_damper_and_a_late_gauge_beside_a_linear_spring() -> None:
     assert [d["same"] for d in details][verdict.alternatives.index(alternative)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("added", "causes"),
     [
@@ -92,6 +93,7 @@ def test_of_two_sets_that_leave_the_same_each_is_fitted_with_what_else_is_there(
     assert verdict.confidence < 0.6
 
 
+@pytest.mark.slow
 def test_a_damper_is_told_from_a_late_gauge_where_the_stiffness_changes() -> None:
     """On a tire, whose tangent grows with the deflection, a lag makes a loop that grows with it, and a damper none."""
     time = np.arange(0.0, 6.0, 0.004)

@@ -81,6 +81,7 @@ def test_nothing_and_what_the_signatures_find_are_fitted_first() -> None:
     assert sets.best() == {"viscous_damping"}
 
 
+@pytest.mark.slow
 def test_sets_begin_anew_only_where_blocks_distort_a_response_by_more_than_noise() -> None:
     """A lag shorter than a block differs from that between the samples; nothing is left out of the law itself."""
     long = damped(1, samples=16_000)

@@ -46,6 +46,7 @@ def test_what_a_refitted_law_is_as_well(tire: TireModel, told: dict[str, str]) -
     assert like_law_of_part(signatures_of(ACTING, dataset), dataset) == told
 
 
+@pytest.mark.slow
 def test_no_spring_in_series_is_an_alternative_beside_a_curve() -> None:
     """It would not change the force, so that no recording could show it."""
     verdict = diagnose([pressed(2, force=0.0)], CURVE)

@@ -46,6 +46,7 @@ TREAD = Effect(
 )
 
 
+@pytest.mark.slow
 def test_effect_outside_the_catalogue_is_found_once_it_is_declared(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(CATALOGUE, TREAD.name, TREAD)
     time = np.linspace(0.0, 60.0, 1500)

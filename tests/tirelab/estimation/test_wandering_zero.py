@@ -27,6 +27,7 @@ def late(name: str, frequency: float, seed: int) -> Recording:
     return Recording(name, time, deflection, np.full(time.size, np.inf), np.array(reading) + zero + noise)
 
 
+@pytest.mark.slow
 def test_a_lag_beside_a_wandering_zero_is_named_and_the_zero_stays_a_remainder() -> None:
     recordings = [late("slow", 0.2, 1), late("fast", 0.5, 2)]
     found = explain_misfit(recordings, TireModel(), catalogue_names(), lambda stage: None)

@@ -124,6 +124,7 @@ def test_report_and_terminal_tell_of_the_correction_and_not_of_a_tire(
     assert ">Coupled system (SSP)<" in page
 
 
+@pytest.mark.slow
 def test_beside_the_force_in_a_column(tmp_path: Path) -> None:
     for name, seed in (("a", 1), ("b", 2)):
         write(tmp_path / f"{name}.csv", seed, lacks=True, simulated=True)

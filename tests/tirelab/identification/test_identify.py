@@ -45,6 +45,7 @@ def covered(draws: int, correlation_time: float) -> int:
     return sum(inside(f, Hull1996()) for f in found)
 
 
+@pytest.mark.slow
 def test_the_stated_uncertainties_hold_under_noise() -> None:
     # at 98 % coverage fewer than 18 of 20 happen once in 130 sets of draws
     assert covered(20, 0.0) >= 18
@@ -149,6 +150,7 @@ def test_the_tested_range_is_that_of_the_recordings() -> None:
 positive = st.floats(0.05, 0.95)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     st.floats(200.0, 2000.0), positive, st.floats(0.03, 0.6), st.floats(1e2, 1e4), st.floats(0.05, 0.2),

@@ -191,6 +191,7 @@ def test_a_damper_whose_force_falls_is_written_as_a_constant(tmp_path: Path) -> 
     assert read_tire(tmp_path / "part.json").preload == pytest.approx(float(np.mean(force)), abs=1.0)
 
 
+@pytest.mark.slow
 def test_a_part_that_the_law_misfits_says_so_with_a_command_that_runs(tmp_path: Path) -> None:
     time = np.arange(2000) / 100.0
     x = 0.01 * np.sin(2.0 * np.pi * time)

@@ -52,6 +52,7 @@ def test_a_curve_is_the_middle_of_a_loop_at_its_turns_too() -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_middle_of_a_loop_is_not_told_of_a_hold() -> None:
     """A ball on a gel that sticks to it: nothing up to 14 mm, 80 N at 15 mm, which decay in a long hold, and a pull of
     30 N on the way back. One straight line leaves what the hold decays by, and lines no more than it.

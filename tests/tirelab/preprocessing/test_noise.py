@@ -214,6 +214,7 @@ def test_a_ripple_beside_filtered_noise_is_taken_off_and_the_noise_stays() -> No
     assert found.memory > 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", [MOTION, ride(4.0)], ids=["cycles", "ride"])
 def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
     """Of 100 drawn noises at most five are taken for a ripple."""

@@ -121,6 +121,7 @@ def test_the_priors_lie_within_the_bounds_for_parts_of_any_size(force: float, tr
                 assert high <= p.maximum
 
 
+@pytest.mark.slow
 def test_a_recording_in_nanonewtons_is_diagnosed_as_it_is() -> None:
     """A sphere on a gel, approached at two speeds and held: relaxation of a quarter in half a second, 10 nN, 14 um."""
     time = np.arange(0.0, 24.0, 5e-3)

@@ -72,6 +72,7 @@ def test_what_loops_call_is_compiled_once_for_all_of_them() -> None:
     assert one == other
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [["deflection_lag", "viscous_damping"], ["series_compliance"]])
 def test_an_array_that_may_not_be_written_to_is_no_other_type(store: Path, names: list[str]) -> None:
     """A recording's arrays may not be; those of blocks may. Each type would be compiled once more."""

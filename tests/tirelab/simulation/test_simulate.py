@@ -315,6 +315,7 @@ def test_what_was_compiled_is_kept_and_gives_the_same(tmp_path: Path) -> None:
     assert [path.stat().st_mtime_ns for path in sorted(tmp_path.rglob("*.nbc"))] == stamps
 
 
+@pytest.mark.slow
 def test_without_a_folder_to_keep_it_in_it_is_compiled_anew(tmp_path: Path) -> None:
     occupied = tmp_path / "file"
     occupied.write_text("not a folder")
