@@ -373,8 +373,12 @@ def _idle(name: str, accepted: Explanation, validation: HeldOut, validate: Valid
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
-    """Return a set without the effects that its refitted law can imitate, if that is nearly as likely; else the set."""
+    """Return the set of a part without the effects that its refitted law can imitate, if that is nearly as likely; else
+    the set. How unusual another shape of a tire's law is counts in the ranking (see `EstimationProblem.hypotheses`).
+    """
     chosen, static = explanation.of(names), explanation.excitation.within_law
+    if not chosen.model.tire.is_part:
+        return chosen
     less = [n for n in names if n == REFITTED_LAW or not static(n)]
     if REFITTED_LAW not in names or len(less) == len(names):
         return chosen

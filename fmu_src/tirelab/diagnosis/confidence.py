@@ -154,7 +154,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
         "imitated": _imitated(effect.name, names, explanation),
-        "beside_law": float(like_law and REFITTED_LAW in names),
+        "beside_law": float(like_law and REFITTED_LAW in names and explanation.model.tire.is_part),
         "significance": _significance(effect),
         "effects": float(len(names)),
         "loudness": _loudness(explanation),

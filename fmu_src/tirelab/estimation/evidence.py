@@ -130,7 +130,9 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
         wide = np.concatenate([width, np.repeat(np.where(scales > none, scales, 0.0), counts)])
         free = np.flatnonzero(wide)  # without the columns of a drift that is none
         scaled = gram[np.ix_(free, free)] * np.outer(wide[free], wide[free])
-        gained, determinant, given_way = _linear_gain(scaled, moment[free] * wide[free], pull[free], variances)
+        gained, determinant, given_way = _linear_gain(
+            scaled, moment[free] * wide[free], pull[free], variances
+        )
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
         wide[free] *= given_way(best)

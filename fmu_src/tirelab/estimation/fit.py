@@ -20,7 +20,7 @@ from ..selection.search import PRIOR_ODDS, Discrepancy, slow_variance
 from .evidence import Linearised, laplace_evidence
 from .forms import drifts, form_errors, smooth_functions
 from .minimise import Iterate, Objective, held_at_bounds, initial_iterate, minimise
-from .problem import EstimationProblem, Values, law_start, problem_of
+from .problem import EstimationProblem, Values, law_start, problem_of, unshaped
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int_]
@@ -58,6 +58,7 @@ class Fit:
     law_scales: of the groups of the law's parameters, where not that of their priors
     held_out_residual (h,): on held-out recordings, in units of the noise; log_predictive: its log likelihood
     beyond: effects of which the recordings ask more than they can be, such as a lag of seconds of a load cell
+    plain: the set with the measured shape of a tire's law, where this fit has another one
     """
 
     problem: EstimationProblem
@@ -78,6 +79,7 @@ class Fit:
     held_out_residual: FloatArray = field(default_factory=lambda: np.zeros(0))
     log_predictive: float = 0.0
     beyond: tuple[str, ...] = ()
+    plain: Fit | None = None
 
     @property
     def out_of_range(self) -> bool:
@@ -85,9 +87,17 @@ class Fit:
         return bool(self.beyond)
 
     @property
+    def without_held_out(self) -> float:
+        """The log posterior on the fitted recordings alone, whatever its effects can be, with the measured shape of a
+        tire's law or with another one, whichever is likelier.
+        """
+        own = self.log_likelihood - PRIOR_ODDS * len(self.problem.hypotheses)
+        return own if self.plain is None else max(own, self.plain.without_held_out)
+
+    @property
     def in_any_range(self) -> float:
         """The log posterior, whatever its effects can be."""
-        return self.log_likelihood + self.log_predictive - PRIOR_ODDS * len(self.names)
+        return self.without_held_out + self.log_predictive
 
     @property
     def log_posterior(self) -> float:
@@ -98,6 +108,12 @@ class Fit:
     def names(self) -> tuple[str, ...]:
         """Names of the set."""
         return self.problem.names
+
+    @property
+    def hypotheses(self) -> frozenset[str]:
+        """Those of the likelier shape of its law, see `EstimationProblem.hypotheses`."""
+        plain = self.plain is not None and self.plain.without_held_out >= self.without_held_out
+        return self.plain.hypotheses if plain and self.plain is not None else self.problem.hypotheses
 
     @property
     def values(self) -> dict[str, tuple[float, ...]]:
@@ -147,6 +163,7 @@ class Fit:
                 self.problem.dataset.apart(evidence.beyond_drift), discrepancy.effective, evidence.freedom
             ),
             law_scales=evidence.law_scales,
+            plain=None if self.plain is None else self.plain.with_discrepancy(discrepancy),
         )
 
 
@@ -173,7 +190,14 @@ def fitted(
             likely, less = _likelier(best, tried[-1])
             near = likely.log_likelihood - less.log_likelihood < BARE_MENTION
             best = less if near and less.power < MAJORITY * likely.power else likely
-    return replace(best, evaluations=sum(f.evaluations for f in tried))
+    plain = None
+    if best.problem.shaped:
+        if not any(not f.problem.shaped for f in tried):
+            measured = {**best.values, LAW: unshaped(best.values[LAW])}
+            of_measured = problem_of(dataset, measured, plain=True)
+            tried.append(_optimise(of_measured, measured, discrepancy, best.variance))
+        plain = max((f for f in tried if not f.problem.shaped), key=lambda f: f.log_likelihood)
+    return replace(best, plain=plain, evaluations=sum(f.evaluations for f in tried))
 
 
 def _likelier(first: Fit, other: Fit) -> tuple[Fit, Fit]:

@@ -107,12 +107,13 @@ def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]
 
 
 def parameters_of_law(
-    surfaces: int, preload: float = 0.0, gap: float = 0.0, kink: float = KINK
+    surfaces: int, preload: float = 0.0, gap: float = 0.0, kink: float = KINK, *, part: bool = False
 ) -> tuple[FreeParameter, ...]:
     """Return the free parameters of the law: factor and exponent common to all surfaces, bend, twist and kinks of the
     shape, with more than one surface a further factor and exponent for each, and for a part its preload or its gap.
 
     preload [N], gap [m], kink [1 or N]: standard deviations of their changes; a tire has neither preload nor gap
+    part: whether it is that of a part, whose bend and twist are no more unusual than its factor and exponent
     """
     shared = math.sqrt(0.5) if surfaces > 1 else 1.0
     spreads = [FACTOR * shared, EXPONENT * shared, BEND, TWIST, *[kink] * KINKS]
@@ -126,7 +127,7 @@ def parameters_of_law(
     shape = tuple(
         FreeParameter(
             *(LAW, i, label, unit, 0.0, spread, False, -most / spread, most / spread, -most, most),
-            optional=4 <= i < COMMON,
+            optional=(4 if part else 2) <= i < COMMON,
             group=groups[i],
         )
         for i, (label, unit, spread, most) in enumerate(zip(labels, units, spreads, bounds, strict=True))
@@ -197,6 +198,19 @@ class EstimationProblem:
         signed = np.array([p.signed for p in self.parameters], dtype=bool)
         return np.where(signed, np.maximum(np.abs(positions), 1.0), 1.0)
 
+    @property
+    def shaped(self) -> bool:
+        """Whether the refitted law of a tire has another shape than the one that was measured.
+
+        F = A x^B was measured of tires (Hull, Wang and Moore, 1996); the shape of a part's law is not known.
+        """
+        return not self.dataset.tire.is_part and any(p.owner == LAW and p.optional for p in self.parameters)
+
+    @property
+    def hypotheses(self) -> frozenset[str]:
+        """Names of its effects, another shape of a tire's law being one more, as unusual as an effect."""
+        return frozenset((*self.names, SHAPE) if self.shaped else self.names)
+
     def values(self, positions: FloatArray) -> dict[str, tuple[float, ...]]:
         """Return all values at positions on the priors' axes."""
         found = {name: list(self.held[name]) for name in self.names}
@@ -256,10 +270,14 @@ def law_start(dataset: Dataset) -> tuple[float, ...]:
     return (0.0,) * len(_parameters_of_law(dataset))
 
 
+def unshaped(law: Sequence[float]) -> tuple[float, ...]:
+    """Return the values of a refitted law with the shape of a tire's."""
+    return (*law[:2], *[0.0] * (COMMON - 2), *law[COMMON:])
+
+
 def _parameters_of_law(dataset: Dataset) -> tuple[FreeParameter, ...]:
-    return parameters_of_law(
-        law_surfaces(dataset), preload_spread(dataset), gap_spread(dataset), kink_spread(dataset)
-    )
+    spreads = preload_spread(dataset), gap_spread(dataset), kink_spread(dataset)
+    return parameters_of_law(law_surfaces(dataset), *spreads, part=dataset.tire.is_part)
 
 
 def with_readings(name: str, values: Sequence[float], dataset: Dataset) -> tuple[float, ...]:

@@ -194,14 +194,16 @@ class FittedSets:
         self.begun.add(begun)
         key = frozenset(starts[0])
         best = self.best_fit if self.fits else None
-        wanted = -np.inf if best is None else best.log_likelihood + PRIOR_ODDS * (len(key) - len(best.names))
+        wanted = -np.inf if best is None else best.without_held_out + PRIOR_ODDS * len(key)
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
         found, self.count = predicted(self.held_out, found), self.count + 1
         self.work += found.evaluations * (EVALUATION + found.residual.size)
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
-        own, kept = ((not fit.out_of_range, fit.log_likelihood) for fit in (found, self.fits.get(key, found)))
+        own, kept = (
+            (not fit.out_of_range, fit.without_held_out) for fit in (found, self.fits.get(key, found))
+        )
         if key not in self.fits or own > kept:
             self.fits[key] = found
 
@@ -302,7 +304,7 @@ def _depends(name: str, beside: Sequence[str]) -> bool:
 
 def _most_away(fit: Fit, other: tuple[Fit, float]) -> float:
     """Return the squared distance below which a set takes the place of another one at its distance, 0 for never."""
-    names, replaced = set(fit.names), set(other[0].names)
+    names, replaced = fit.hypotheses, other[0].hypotheses
     return other[1] if names < replaced else MAJORITY * other[1] if names > replaced else 0.0
 
 

@@ -53,7 +53,11 @@ def explained(names: str, *others: tuple[str, float], **more: Any) -> Any:
             of_deflection=lambda name: name in OF_DEFLECTION,
             within_law=lambda name: one_surface and name in OF_DEFLECTION,
         ),
-        model=SimpleNamespace(radii=(np.inf,), fit=SimpleNamespace(problem=problem)),
+        model=SimpleNamespace(
+            radii=(np.inf,),
+            fit=SimpleNamespace(problem=problem),
+            tire=SimpleNamespace(is_part=more.get("part", True)),
+        ),
     )
 
 
@@ -142,6 +146,11 @@ def test_on_several_surfaces_a_law_of_another_form_can_still_be_an_effect_of_the
     found = [grounds_of_effect(e, one, HELD_OUT) for e in one.effects]
     assert [f["imitated"] for f in found] == [0.0, 0.0]
     assert [f["beside_law"] for f in found] == [0.0, 1.0]
+
+
+def test_that_a_tires_law_has_another_shape_is_in_the_odds_and_not_counted_twice() -> None:
+    one = explained("recalibration gas_compression", one_surface=False, part=False)
+    assert [grounds_of_effect(e, one, HELD_OUT)["beside_law"] for e in one.effects] == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from tirelab.estimation.problem import (
 from tirelab.names import REFITTED_LAW
 from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import Dataset, dataset_of
+from tirelab.regressors.signature import SHAPE
 from tirelab.simulation.simulate import simulate
 
 DATASET: Dataset = dataset_of([damped(4, samples=2000)], TireModel())
@@ -110,6 +111,20 @@ def test_the_baselines_law_is_where_a_refit_begins() -> None:
     tire = tire_of(DATASET, {REFITTED_LAW: law_start(DATASET)})
     assert law_surfaces(DATASET) == 1
     np.testing.assert_allclose(DATASET.response(tire), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("tire", "shaped"),
+    [(TireModel(), {REFITTED_LAW, SHAPE}), (TireModel(inflated=False, two_sided=True), {REFITTED_LAW})],
+)
+def test_another_shape_of_a_tires_law_is_a_hypothesis_of_its_own(tire: TireModel, shaped: set[str]) -> None:
+    """Another factor and exponent are one hypothesis; of a part no shape was measured, so none is unusual."""
+    dataset = dataset_of([damped(4, samples=2000)], tire)
+    start = {REFITTED_LAW: law_start(dataset)}
+    assert problem_of(dataset, start, plain=True).hypotheses == {REFITTED_LAW}
+    assert problem_of(dataset, start, plain=False).hypotheses == shaped
+    bent = {REFITTED_LAW: (0.1, 0.05, 0.02, *start[REFITTED_LAW][3:])}
+    assert problem_of(dataset, bent, plain=True).hypotheses == shaped
 
 
 def test_the_law_of_a_part_has_its_preload_and_that_of_a_tire_has_none() -> None:

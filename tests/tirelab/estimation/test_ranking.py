@@ -102,7 +102,10 @@ def by_response(*sets: tuple[str, float, tuple[float, ...]]) -> Ranking:
     """Sets with their probability, the largest first, and what they leave of a misfit of some samples."""
     fits: Any = [
         SimpleNamespace(
-            names=tuple(n.split()), log_posterior=TEMPERATURE * np.log(p), residual=np.array(left)
+            names=tuple(n.split()),
+            hypotheses=frozenset(n.split()),
+            log_posterior=TEMPERATURE * np.log(p),
+            residual=np.array(left),
         )
         for n, p, left in sets
     ]
