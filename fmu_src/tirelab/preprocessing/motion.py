@@ -58,8 +58,7 @@ MOST_PIECES = 1000
 class Motion:
     """The motion of one recording; every array has the shape of its samples.
 
-    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed
-    noise: standard deviation [m] of the deflection's reading
+    deflection [m], rate [m/s], acceleration [m/s^2]: smoothed; noise [m]: standard deviation of the reading
     deepest: largest deflection so far [m]; cycle: number of the loading-unloading cycle; direction: +1 loading,
     -1 unloading, kept through holds
     resolved: False where the motion has a corner within a sample, so that its rate there is not known
@@ -80,28 +79,30 @@ LONG, KEPT, KEPT_LONG = 50_000, 32, 2
 of long ones; a diagnosis asks for each up to ten times."""
 
 
-def motion_of(time: FloatArray, deflection: FloatArray, *, timed: bool = True, keep: bool = True) -> Motion:
+def motion_of(
+    time: FloatArray, deflection: FloatArray, step: float = 0.0, *, timed: bool = True, keep: bool = True
+) -> Motion:
     """Return the motion of a recording: time [s] rising, deflection [m]; its arrays are not to be written to.
 
-    timed: whether the times were measured; keep: whether it is asked for again, since a long one is large to keep
+    step [m]: of a gauge, see `destepped`; timed: whether the times were measured; keep: whether it is asked for again
     """
     t, x = (np.asarray(values, dtype=np.float64) for values in (time, deflection))
     kept = _kept if x.size <= LONG else _kept_long
-    return kept(t.tobytes(), x.tobytes(), timed) if keep else _motion(t, x, timed)
+    return kept(t.tobytes(), x.tobytes(), step, timed) if keep else _motion(t, x, step, timed)
 
 
-def _motion_of_bytes(time: bytes, deflection: bytes, timed: bool) -> Motion:
-    return _motion(np.frombuffer(time), np.frombuffer(deflection), timed)
+def _motion_of_bytes(time: bytes, deflection: bytes, step: float, timed: bool) -> Motion:
+    return _motion(np.frombuffer(time), np.frombuffer(deflection), step, timed)
 
 
 _kept, _kept_long = (lru_cache(most)(_motion_of_bytes) for most in (KEPT, KEPT_LONG))
 
 
-def _motion(time: FloatArray, deflection: FloatArray, timed: bool) -> Motion:
+def _motion(time: FloatArray, deflection: FloatArray, step: float, timed: bool) -> Motion:
     noise = deflection_noise(deflection, timed=timed)
-    smooth, rate, acceleration, resolved = _smoothed(time, deflection, noise)
-    # Smoothing cuts a corner short: there the reading itself is nearer.
-    smooth = np.where(resolved, smooth, deflection)
+    # Lines between levels differ little from one sample to the next, and err by parts of a step all the same.
+    smooth, rate, acceleration, resolved = _smoothed(time, deflection, max(noise, step / np.sqrt(12.0)))
+    smooth = np.where(resolved, smooth, deflection)  # smoothing cuts a corner short
     direction, cycle = branches(smooth, noise)
     deepest = np.maximum.accumulate(smooth)
     return Motion(smooth, rate, acceleration, noise, deepest, cycle, direction, resolved)
@@ -122,8 +123,7 @@ def _smoothed(
     parts = np.zeros((3, deflection.size))
     for begin, end in _pieces(resolved):
         parts[:, begin:end] = smoothed(deflection[begin:end], step, noise)
-    smooth, rate, acceleration = parts
-    return smooth, rate, acceleration, resolved
+    return parts[0], parts[1], parts[2], resolved
 
 
 def _resolved(deflection: FloatArray, noise: float) -> BoolArray:

@@ -16,12 +16,11 @@ from radialtire import CATALOGUE, CHANNELS, Channel, TireModel
 from radialtire.effect import PLACES
 from radialtire.model import READING_NOISE
 
-from ..preprocessing.motion import Motion, motion_of
 from ..preprocessing.noise import Noise, resting
-from ..preprocessing.samples import Recorded, is_timed
+from ..preprocessing.samples import Recorded
 from ..simulation.kept_stages import KeptStages
 from ..simulation.simulate import SmoothedMotion, elastic_stage, simulate, smoothed_motion
-from .experiment import Experiment, experiment_in_blocks, read_anew, read_deflection
+from .experiment import Experiment, experiment_in_blocks, read_anew, read_motion
 
 __all__ = ["BLOCKS", "Dataset", "Experiment", "Samples", "Scales", "arranged", "dataset_of", "samples_of"]
 
@@ -243,13 +242,9 @@ class Samples:
         )
 
 
-def _motion(recording: Recorded) -> Motion:
-    return motion_of(recording.time, read_deflection(recording)[0], timed=is_timed([recording]))
-
-
 def samples_of(recordings: Sequence[Recorded], tire: TireModel) -> Samples:
     """Return the samples from which the blocks of the recordings are made; tire: the baseline."""
-    motions = tuple(smoothed_motion(r, _motion(r)) for r in recordings)
+    motions = tuple(smoothed_motion(r, read_motion(r)[0]) for r in recordings)
     return Samples(tuple(recordings), motions, tuple(simulate(tire, m, m) for m in motions))
 
 

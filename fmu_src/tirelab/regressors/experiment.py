@@ -157,8 +157,7 @@ def experiment_in_blocks(
     sizes: least and most samples of a block; reading: noise of a sample, if known; series: other recordings
     """
     interval = float(np.median(np.diff(recording.time)))
-    read, step = read_deflection(recording)
-    motion = motion_of(recording.time, read, timed=is_timed([recording]))
+    motion, step = read_motion(recording)
     gauge = 0.0 if step > 0.0 else motion.noise
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
@@ -213,15 +212,10 @@ def read_anew(recording: Recorded, experiment: Experiment, tire: TireModel) -> E
     show it, but for the reversals within a sample; tire: the baseline
     """
     random = np.random.default_rng(1)  # the same each time, so that a recording has one verdict
-    read, step = read_deflection(recording)
-    timed = is_timed([recording])
-    motion = motion_of(recording.time, read, timed=timed)
-    if step > 0.0:
-        stepped = read_again(motion.deflection, recording.deflection, 0.0, step, random)
-        other = destepped(recording.time, stepped, step)
-    else:
-        other = read_again(motion.deflection, read, motion.noise, gauge_step(read), random)
-    anew = motion_of(recording.time, other, timed=timed, keep=False)
+    (motion, step), read = read_motion(recording), recording.deflection
+    noise, rounded = (0.0, step) if step > 0.0 else (motion.noise, gauge_step(read))
+    other = read_again(motion.deflection, read, noise, rounded, random)
+    anew = _without_steps(recording, other, step, keep=False)
     blocks = experiment.blocks
     averaged = _averaged(smoothed_motion(recording, anew), np.zeros(other.size, dtype=bool), blocks)
     known = blocks.of(motion.resolved & anew.resolved).all(axis=1)
@@ -275,11 +269,16 @@ def _counted(recording: Recorded, known: BoolArray, blocks: Blocks) -> BoolArray
     return np.asarray(counts & blocks.of(followed).all(axis=1))
 
 
-def read_deflection(recording: Recorded) -> tuple[FloatArray, float]:
-    """Return the deflection [m] without the steps of its gauge, and the step [m], 0 where there is none."""
+def read_motion(recording: Recorded) -> tuple[Motion, float]:
+    """Return the motion without the steps of its gauge, and the step [m], 0 where there is none."""
     step = staircase_step(recording.deflection)
-    read = destepped(recording.time, recording.deflection, step) if step > 0.0 else recording.deflection
-    return read, step
+    return _without_steps(recording, recording.deflection, step), step
+
+
+def _without_steps(recording: Recorded, read: FloatArray, step: float, *, keep: bool = True) -> Motion:
+    """Return the motion of readings [m] in steps [m] at the times of a recording; keep: see `motion_of`."""
+    level = destepped(recording.time, read, step) if step > 0.0 else read
+    return motion_of(recording.time, level, step, timed=is_timed([recording]), keep=keep)
 
 
 def _blocks(

@@ -290,3 +290,24 @@ def test_blocks_of_one_sample_leave_nothing_out() -> None:
     values = tuple({"lag": 0.005}.get(p.name, p.start) for p in lag.parameters)
     lagging = arranged(TireModel(), [(lag.name, values)])
     assert not samples_of([read], TireModel()).left_out(dataset, lagging)[0].any()
+
+
+def coarse_swing(step: float) -> tuple[Recording, np.ndarray, np.ndarray]:
+    """Return a growing swing of 10 mm that a gauge reads in steps [m], every 2 ms, its rate and its acceleration."""
+    time, depth, w = np.arange(0.0, 8.0, 2e-3), 0.01, np.pi
+    size, growth = depth * (0.3 + 0.0875 * time), depth * 0.0875
+    x = size * np.sin(w * time) + 0.37 * step
+    rate = growth * np.sin(w * time) + w * size * np.cos(w * time)
+    acceleration = 2.0 * w * growth * np.cos(w * time) - w**2 * size * np.sin(w * time)
+    read = step * np.round(x / step)
+    force = 1e4 * x + 0.1 * np.random.default_rng(2).normal(size=time.size)
+    return Recording("swing", time, read, np.full(time.size, np.inf), force), rate, acceleration
+
+
+def test_a_swing_that_is_read_in_steps_has_its_rate_and_its_acceleration() -> None:
+    """Its readings stay on a level for two samples in the middle, and for dozens at its ends."""
+    recording, rate, acceleration = coarse_swing(1e-4)
+    (found,) = samples_of([recording], TireModel()).motions
+    inside = slice(50, -50)
+    assert np.std((found.rate - rate)[inside]) < 0.02 * np.std(rate)
+    assert np.std((found.acceleration - acceleration)[inside]) < 0.2 * np.std(acceleration)
