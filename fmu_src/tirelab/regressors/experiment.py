@@ -158,7 +158,7 @@ def experiment_in_blocks(
     """
     interval = float(np.median(np.diff(recording.time)))
     motion, step = read_motion(recording)
-    gauge = 0.0 if step > 0.0 else motion.noise
+    gauge = step * SHARE_OF_STEP if step > 0.0 else motion.noise
     moved = smoothed_motion(recording, motion)
     baseline = simulate(replace(tire, reading_noise=min(gauge, READING_NOISE.maximum)), moved, moved)
     misfit = recording.force - baseline

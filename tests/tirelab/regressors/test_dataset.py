@@ -311,3 +311,13 @@ def test_a_swing_that_is_read_in_steps_has_its_rate_and_its_acceleration() -> No
     inside = slice(50, -50)
     assert np.std((found.rate - rate)[inside]) < 0.02 * np.std(rate)
     assert np.std((found.acceleration - acceleration)[inside]) < 0.2 * np.std(acceleration)
+
+
+def test_a_written_tire_is_guarded_against_the_steps_of_its_gauge() -> None:
+    """Their rounding is a noise of q / sqrt(12) (Widrow): the difference of two readings is a step or none."""
+    step = 1e-4
+    dataset = dataset_of([coarse_swing(step)[0]], TireModel())
+    assert dataset.tire.reading_noise == pytest.approx(step / np.sqrt(12.0))
+    (experiment,) = dataset.experiments
+    assert experiment.floor.gauge == 0.0
+    assert experiment.floor.steps > 0.0
