@@ -177,7 +177,7 @@ def guessed_columns(
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1
     if len(free) > len(both) and clock in values:
-        rates = rates_among({i: values[i] for i in free}, values[clock])
+        rates = rates_among({i: values[i] for i in {*free, *places.values()} - {clock}}, values[clock])
         free = [i for i in free if i not in rates]
     if len(free) >= len(both):
         # Of many columns the first ones: of trials side by side those of one trial.

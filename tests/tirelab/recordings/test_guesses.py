@@ -73,6 +73,14 @@ def test_a_velocity_recorded_beside_the_travel_is_not_guessed_to_be_the_force(
     assert proposed(path)[:2] == ["--columns", ",".join(f"{n}={c}" for n, c in wanted.items())]
 
 
+def test_a_velocity_beside_a_travel_that_is_named_is_not_guessed_to_be_the_force(tmp_path: Path) -> None:
+    """A motor's log: its position is known by name, and its torque is no word for a force."""
+    t = np.arange(0.0, 4.0, 0.005)
+    x, v = 10.0 * np.sin(np.pi * t), 10.0 * np.pi * np.cos(np.pi * t)
+    path = write_rows(tmp_path / "a.csv", "time,position,velocity,torque", t, x, v, 3.0 * np.sin(x / 10.0))
+    assert proposed(path)[:2] == ["--columns", "force=#4"]
+
+
 def test_a_force_that_goes_with_the_rate_is_still_guessed(tmp_path: Path) -> None:
     """A linear damper of 31 N s/m: its force is as much like the rate as a rate is, but not of its size."""
     t = np.arange(0.0, 4.0, 0.005)
