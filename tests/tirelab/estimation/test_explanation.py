@@ -275,6 +275,21 @@ def test_on_one_surface_a_law_of_another_shape_is_told_beside_a_knee(surfaces: i
     assert found.of(("recalibration",)).confounded == ()
 
 
+@pytest.mark.parametrize(
+    ("zero", "named"),
+    [(0.4e-3, {"recalibration", "deflection_offset"}), (0.0, {"recalibration"})],
+)
+def test_a_zero_beside_another_law_is_no_less_likely_than_a_law_of_another_shape(
+    zero: float, named: set[str]
+) -> None:
+    """620 (x + zero)^1.5 N; another A and B alone leave 4.6 N of it, a law of another shape next to nothing."""
+    time, deflection = triangle()
+    force = 620.0 * (100.0 * np.maximum(deflection + zero, 0.0)) ** 1.5
+    press = read("press", time, deflection, force, 8, noise=5.0)
+    found = explain_misfit([press], TireModel(), ("recalibration", "deflection_offset"), lambda stage: None)
+    assert set(found.model.names) == named
+
+
 @pytest.mark.parametrize(("breakaway", "alike"), [(0.5e-3, True), (2e-3, False)])
 def test_friction_at_one_speed_is_told_from_damping_by_how_it_breaks_away(
     breakaway: float, alike: bool
