@@ -11,13 +11,19 @@ from tirelab.estimation.evidence import Linearised
 from tirelab.estimation.findings import FittedModel
 from tirelab.estimation.fit import Fit
 from tirelab.estimation.problem import law_start, problem_of
-from tirelab.regressors.dataset import dataset_of
+from tirelab.regressors.dataset import Dataset, dataset_of
 from tirelab.regressors.signature import LAW
 
 
 def values_of(name: str, **given: float) -> tuple[float, ...]:
     """Return the values of an effect, those that are not given as the catalogue begins."""
     return tuple(given.get(p.name, p.start) for p in CATALOGUE[name].parameters)
+
+
+def law_of(dataset: Dataset, **given: float) -> tuple[float, ...]:
+    """Return the values of a refitted law, those that are not given as of the baseline's."""
+    free = problem_of(dataset, {LAW: law_start(dataset)}, plain=False).parameters
+    return tuple(given.get(p.label, 0.0) for p in free)
 
 
 HULL = TireModel()
@@ -33,7 +39,9 @@ def fit_of(
     drive = read("ride", time, deflection, flat_force(deflection), 3)
     drives = [type(drive)(f"{r}", time, drive.deflection, np.full(time.size, r), drive.force) for r in radii]
     dataset = dataset_of(drives, tire)
-    values = {n: law_start(dataset) if n == LAW else values_of(n, **given) for n, given in effects.items()}
+    values = {
+        n: law_of(dataset, **given) if n == LAW else values_of(n, **given) for n, given in effects.items()
+    }
     problem = problem_of(dataset, values, plain=True)
     positions = problem.positions(values)
     slopes = np.ones((dataset.misfit.size, positions.size))

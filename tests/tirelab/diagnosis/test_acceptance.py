@@ -94,8 +94,9 @@ class Ranked:
         return next(s for s in self.sets if set(s.names) == set(names))
 
 
-def made(names: str, left: float, damping: float = 0.0) -> Made:
-    return Made(tuple(names.split()), left, damper(damping) if damping else TireModel())
+def made(names: str, left: float, damping: float = 0.0, *, part: bool = False) -> Made:
+    tire = damper(damping) if damping else TireModel()
+    return Made(tuple(names.split()), left, replace(tire, two_sided=part))
 
 
 def delivered(*sets: Made, held_out: Drive = KEPT, surfaces: int = 1, near: bool = False) -> Any:
@@ -172,18 +173,24 @@ LAW_AND_DAMPER = {REFITTED_LAW, "viscous_damping"}
 
 
 @pytest.mark.parametrize(
-    ("near", "surfaces", "names"),
+    ("part", "near", "surfaces", "names"),
     [
-        (True, 1, LAW_AND_DAMPER),  # the law alone is nearly as likely as with the spring
-        (False, 1, LAW_AND_DAMPER | {"series_compliance"}),  # no law follows what the spring does
-        (True, 2, LAW_AND_DAMPER | {"series_compliance"}),  # two surfaces tell a spring from a law
+        (True, True, 1, LAW_AND_DAMPER),  # the law alone is nearly as likely as with the spring
+        (True, False, 1, LAW_AND_DAMPER | {"series_compliance"}),  # no law follows what the spring does
+        (True, True, 2, LAW_AND_DAMPER | {"series_compliance"}),  # two surfaces tell a spring from a law
+        (
+            False,
+            True,
+            1,
+            LAW_AND_DAMPER | {"series_compliance"},
+        ),  # a tire's law has the shape that was measured
     ],
 )
-def test_on_one_surface_a_static_effect_stands_beside_a_refitted_law_only_where_no_law_does_it(
-    near: bool, surfaces: int, names: set[str]
+def test_on_one_surface_a_static_effect_stands_beside_the_law_of_a_part_only_where_no_law_does_it(
+    part: bool, near: bool, surfaces: int, names: set[str]
 ) -> None:
-    together = made(f"{REFITTED_LAW} series_compliance viscous_damping", 5.0, 500.0)
-    plain = made(f"{REFITTED_LAW} viscous_damping", 5.2, 500.0)
+    together = made(f"{REFITTED_LAW} series_compliance viscous_damping", 5.0, 500.0, part=part)
+    plain = made(f"{REFITTED_LAW} viscous_damping", 5.2, 500.0, part=part)
     chosen, _ = delivered(together, plain, made("", 15.0), surfaces=surfaces, near=near)
     assert set(chosen.names) == names
 

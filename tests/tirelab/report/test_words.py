@@ -132,8 +132,9 @@ def test_sets_are_named_whether_known_or_not() -> None:
 
 def test_every_parameter_of_a_refitted_law_has_a_meaning() -> None:
     """ "log factor on A" and "change of B", by which the law of each surface is fitted, had none."""
-    labels = [e.name for e in estimates_of(fit_of({"recalibration": {}}, (float("inf"), -0.381)))]
-    assert len(labels) >= 5
+    law = {"bend": 0.01, "twist": 0.01, "kink 1": 0.01}
+    labels = [e.name for e in estimates_of(fit_of({"recalibration": law}, (float("inf"), -0.381)))]
+    assert len(labels) == 2 * 2 + len(law)
     for label in labels:
         assert words.meaning("recalibration", label), label
     assert "coefficient A" in words.meaning("recalibration", "log factor on A, flat")
