@@ -18,6 +18,9 @@ from concealed.wide.press import fitted_power_law
 from scipy.optimize import curve_fit
 
 COUNT = 3
+DRAWN = [pytest.param(kind, marks=pytest.mark.slow) if kind == "set" else kind for kind in WIDE_KINDS]
+"""The kinds; trials of a permanent set are drawn again so often that they take longest."""
+
 Drawn = Callable[[str], list[Trial]]
 
 
@@ -41,9 +44,7 @@ def test_wide_kinds_are_never_drawn_unasked() -> None:
     assert sum(KINDS.values()) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
-    "kind", [pytest.param(k, marks=pytest.mark.slow) if k == "set" else k for k in WIDE_KINDS]
-)
+@pytest.mark.parametrize("kind", DRAWN)
 def test_the_same_seed_gives_the_same_wide_trial(drawn: Drawn, kind: str) -> None:
     one = drawn(kind)[0]
     other = draw(one.seed, kind=kind)
@@ -52,7 +53,7 @@ def test_the_same_seed_gives_the_same_wide_trial(drawn: Drawn, kind: str) -> Non
     assert one.answer.kind == kind
 
 
-@pytest.mark.parametrize("kind", WIDE_KINDS)
+@pytest.mark.parametrize("kind", DRAWN)
 def test_the_true_set_comes_first_and_held_out_tests_are_of_both_sorts(drawn: Drawn, kind: str) -> None:
     own = {"pressure": {"inflation_pressure"}, "set": {"permanent_set"}}.get(kind, set())
     beside = {"recalibration", *own}

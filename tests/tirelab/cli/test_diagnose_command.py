@@ -162,6 +162,7 @@ def test_the_page_names_the_command_and_both_recordings(done: tuple[Result, Path
         assert words in page
 
 
+@pytest.mark.slow
 def test_alternatives_come_with_a_test_that_the_rig_can_run(
     one_rate_press: Drive, one_rate_verdict: Verdict, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

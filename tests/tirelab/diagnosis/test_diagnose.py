@@ -195,6 +195,7 @@ def test_a_verdict_is_json(alike_verdict):
     assert content["verdict"]["remainder"]["size"] < 0.75
 
 
+@pytest.mark.slow
 def test_the_page_calls_that_set_the_verdict_which_is_delivered(alike_verdict, unequal_verdict):
     for verdict in (alike_verdict, unequal_verdict):
         told = [set(e["effects"]) for e in verdict.page_content()["evidence"] if e["remark"] == "the verdict"]

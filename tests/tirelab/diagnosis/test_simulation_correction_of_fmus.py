@@ -126,6 +126,7 @@ def test_a_drift_beside_the_simulation_is_found_and_added(drifting: Done) -> Non
     assert drifting.content["correction"]["moves"] is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("which", ["shifted", "drifting"])
 def test_the_stated_errors_are_those_of_simulation_and_correction(
     which: str, request: pytest.FixtureRequest

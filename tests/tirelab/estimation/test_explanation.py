@@ -259,7 +259,7 @@ def test_a_misfit_far_above_the_noise_shows_what_a_law_cannot_follow(found: Expl
     assert not {"viscous_damping", "inertia"} & set(found.within_law)
 
 
-@pytest.mark.parametrize("surfaces", [1, 2])
+@pytest.mark.parametrize("surfaces", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_on_one_surface_a_law_of_another_shape_is_told_beside_a_knee(surfaces: int) -> None:
     """Another stiffness below 10 mm and a steeper one beyond: the tire's own law, or a rim under another law."""
     presses = []
