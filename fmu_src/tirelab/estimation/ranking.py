@@ -192,8 +192,7 @@ class FittedSets:
         if (begun := (*(tuple(s.items()) for s in starts), variance, self.discrepancy)) in self.begun:
             return
         self.begun.add(begun)
-        key = frozenset(starts[0])
-        best = self.best_fit if self.fits else None
+        key, best = frozenset(starts[0]), self.best_fit if self.fits else None
         wanted = -np.inf if best is None else best.without_held_out + PRIOR_ODDS * len(key)
         found = fitted(self.dataset, starts, self.discrepancy, variance, wanted)
         found, self.count = predicted(self.held_out, found), self.count + 1
@@ -201,9 +200,8 @@ class FittedSets:
         self.times[key] += 1
         if best is not None and found.log_posterior > best.log_posterior + LOST:
             self.gained_at = self.count
-        own, kept = (
-            (not fit.out_of_range, fit.without_held_out) for fit in (found, self.fits.get(key, found))
-        )
+        pair = found, self.fits.get(key, found)
+        own, kept = ((not fit.out_of_range, fit.without_held_out) for fit in pair)
         if key not in self.fits or own > kept:
             self.fits[key] = found
 
