@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from drives import flat_force, read, triangle
 from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.estimation.fit import LEAST_GAIN, fitted
 from tirelab.estimation.problem import law_start, with_readings
 from tirelab.names import REFITTED_LAW
 from tirelab.regressors.dataset import dataset_of
-from tirelab.selection.search import discrepancy_of
+from tirelab.selection.search import PRIOR_ODDS, discrepancy_of
 from tirelab.simulation.simulate import simulate
 
 
@@ -49,3 +50,21 @@ def test_a_law_that_is_no_power_beyond_a_gap_is_followed_to_the_noise() -> None:
     found = fitted(dataset, starts, discrepancy_of(dataset.misfit, 0.002), 1e4, -np.inf)
     # In units of the noise; ten heights over the contact may leave something of the first touch.
     assert found.power / found.residual.size < 1.5
+
+
+@pytest.mark.parametrize(("ripple", "count"), [(30.0, 2), (0.0, 1)])
+def test_a_law_of_another_shape_is_one_hypothesis_more_where_it_is_likelier(
+    ripple: float, count: int
+) -> None:
+    """No power of x follows the sine over the deflection; without it another factor of 1.2 is all."""
+    deflection = np.linspace(0.0005, 0.02, 300)
+    force = 1.2 * flat_force(deflection) + ripple * np.sin(500.0 * deflection)
+    press = read("press", np.linspace(0.0, 9.0, 300), deflection, force, 5, noise=0.5)
+    dataset = dataset_of([press], TireModel())
+    discrepancy = discrepancy_of(dataset.misfit, 0.002)
+    found = fitted(dataset, [{REFITTED_LAW: law_start(dataset)}], discrepancy, 1.0, -np.inf)
+    again = fitted(dataset, [found.values], discrepancy, found.variance, -np.inf)
+    for fit in (found, again):  # from a law that has the shape already, too
+        assert len(fit.hypotheses) == count
+        own = fit.plain if fit.plain is not None and count == 1 else fit
+        assert fit.log_posterior == own.log_likelihood - count * PRIOR_ODDS
