@@ -373,14 +373,11 @@ def _idle(name: str, accepted: Explanation, validation: HeldOut, validate: Valid
 
 
 def _plainer(explanation: Explanation, names: Sequence[str]) -> Explanation:
-    """Return the set of a part without the effects that its refitted law can imitate, if that is nearly as likely; else
-    the set. How unusual another shape of a tire's law is counts in the ranking (see `EstimationProblem.hypotheses`).
-    """
+    """Return the set of a part without what its refitted law can imitate, if nearly as likely; else the set."""
     chosen, static = explanation.of(names), explanation.excitation.within_law
-    if not chosen.model.tire.is_part:
-        return chosen
     less = [n for n in names if n == REFITTED_LAW or not static(n)]
-    if REFITTED_LAW not in names or len(less) == len(names):
+    # How unusual another shape of a tire's law is counts in the ranking.
+    if not chosen.model.tire.is_part or REFITTED_LAW not in names or len(less) == len(names):
         return chosen
     return explanation.of(less) if explanation.is_near(less, names) else chosen
 

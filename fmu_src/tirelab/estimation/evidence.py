@@ -135,8 +135,9 @@ def _evidence_with_forms(fit: Linearised, width: FloatArray, discrepancy: Discre
         )
         values = fixed + 0.5 * (gained - alone - determinant)
         best = int(np.argmax(values))
-        wide[free] *= given_way(best)
-        return float(values[best]) - _cost_of_scales(scales), scales, best, wide
+        coefficients = np.zeros(wide.size)
+        coefficients[free] = given_way(best) * wide[free]
+        return float(values[best]) - _cost_of_scales(scales), scales, best, coefficients
 
     together = [np.append(none, np.minimum(scale, most)) for scale in (FORM_SCALES if fit.forms else (1.0,))]
     best = max((of(scales) for scales in together), key=lambda f: f[0])

@@ -87,12 +87,14 @@ class Fit:
         return bool(self.beyond)
 
     @property
+    def likelier_shape(self) -> Fit:
+        """This fit, or that with the measured shape of a tire's law, if it is no less likely."""
+        return self if self.plain is None else max(self.plain, self, key=_log_posterior)
+
+    @property
     def without_held_out(self) -> float:
-        """The log posterior on the fitted recordings alone, whatever its effects can be, with the measured shape of a
-        tire's law or with another one, whichever is likelier.
-        """
-        own = self.log_likelihood - PRIOR_ODDS * len(self.problem.hypotheses)
-        return own if self.plain is None else max(own, self.plain.without_held_out)
+        """The log posterior on the fitted recordings alone, with the likelier shape, whatever its effects can be."""
+        return _log_posterior(self.likelier_shape)
 
     @property
     def in_any_range(self) -> float:
@@ -112,8 +114,7 @@ class Fit:
     @property
     def hypotheses(self) -> frozenset[str]:
         """Those of the likelier shape of its law, see `EstimationProblem.hypotheses`."""
-        plain = self.plain is not None and self.plain.without_held_out >= self.without_held_out
-        return self.plain.hypotheses if plain and self.plain is not None else self.problem.hypotheses
+        return self.likelier_shape.problem.hypotheses
 
     @property
     def values(self) -> dict[str, tuple[float, ...]]:
@@ -167,6 +168,10 @@ class Fit:
         )
 
 
+def _log_posterior(fit: Fit) -> float:
+    return fit.log_likelihood - PRIOR_ODDS * len(fit.problem.hypotheses)
+
+
 def fitted(
     dataset: Dataset, starts: Sequence[Values], discrepancy: Discrepancy, variance: float, wanted: float
 ) -> Fit:
@@ -192,10 +197,9 @@ def fitted(
             best = less if near and less.power < MAJORITY * likely.power else likely
     plain = None
     if best.problem.shaped:
-        if not any(not f.problem.shaped for f in tried):
-            measured = {**best.values, LAW: unshaped(best.values[LAW])}
-            of_measured = problem_of(dataset, measured, plain=True)
-            tried.append(_optimise(of_measured, measured, discrepancy, best.variance))
+        if all(f.problem.shaped for f in tried):
+            start = {**best.values, LAW: unshaped(best.values[LAW])}
+            tried.append(_optimise(problem_of(dataset, start, plain=True), start, discrepancy, best.variance))
         plain = max((f for f in tried if not f.problem.shaped), key=lambda f: f.log_likelihood)
     return replace(best, plain=plain, evaluations=sum(f.evaluations for f in tried))
 
