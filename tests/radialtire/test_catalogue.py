@@ -28,6 +28,8 @@ from radialtire.effect import PLACES
 
 EFFECTS = pytest.mark.parametrize("effect", CATALOGUE.values(), ids=CATALOGUE.keys())
 
+REGISTRY = pint.UnitRegistry()
+
 QUANTITY_UNITS = {
     "1": "1",
     "force": "N",
@@ -68,13 +70,12 @@ ISSUE = {
 @EFFECTS
 def test_a_prior_scales_with_the_recording_as_the_unit_of_its_parameter_does(effect: Effect) -> None:
     """A fibre of micrometres and a column of meganewtons have the same priors, in proportion."""
-    registry = pint.UnitRegistry()
     for parameter in effect.parameters:
         if parameter.prior is None or parameter.name in ABSOLUTE:
             continue
         above, _, below = parameter.prior.scale.partition("/")
-        scale = registry(QUANTITY_UNITS[above]) / registry(QUANTITY_UNITS[below or "1"])
-        assert registry(parameter.unit.replace(".", "*")).dimensionality == scale.dimensionality, (
+        scale = REGISTRY(QUANTITY_UNITS[above]) / REGISTRY(QUANTITY_UNITS[below or "1"])
+        assert REGISTRY(parameter.unit.replace(".", "*")).dimensionality == scale.dimensionality, (
             parameter.name
         )
 

@@ -112,7 +112,7 @@ def test_a_deflection_is_taken_as_exact_where_that_leaves_less(gauge: float, exa
     ("force", "length", "time"),
     [
         pytest.param(1e4, 1.0, 1.0, marks=pytest.mark.slow),
-        (1.0, 0.01, 1.0),
+        pytest.param(1.0, 0.01, 1.0, marks=pytest.mark.slow),
         pytest.param(1.0, 8.0, 30.0, marks=pytest.mark.slow),
     ],
 )
