@@ -10,6 +10,11 @@ class TirelabError(ValueError):
     """Bad input, explained in one sentence with the place and the next step."""
 
 
+def unwritable_folder(folder: Path, error: OSError) -> TirelabError:
+    """Return the error of a command whose folder for its files, given with --out, cannot be written."""
+    return TirelabError(f"{folder} cannot be written ({error.strerror}); name another folder with --out")
+
+
 def missing_library(purpose: str, library: str, package: str) -> str:
     """Return the sentence for a library that is not installed; `package`: its name on the package index."""
     return f"{purpose} needs {library}; install it: python -m pip install {package}"

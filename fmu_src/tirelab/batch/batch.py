@@ -22,7 +22,7 @@ from ..computing.staging import staged
 from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import DiagnosisFileError, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, run_diagnosis
-from ..errors import TirelabError
+from ..errors import TirelabError, unwritable_folder
 from ..recordings.files import folder_recordings
 from ..recordings.formats import LOADERS
 from ..recordings.metadata import FOLDER_SIDECAR
@@ -63,7 +63,7 @@ def diagnose_batch(batch: Batch, cores: Cores, show: Callable[[str], None]) -> B
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise TirelabError(f"{out}: cannot be written ({error.strerror}); name another with --out") from None
+        raise unwritable_folder(out, error) from None
     diagnoser = batch.diagnoser or partial(_diagnosed, batch.reading)
     tasks = {
         item.name: (diagnoser, item.recordings, batch.tire, _verdict_folder(out, item))

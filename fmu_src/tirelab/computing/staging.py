@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ..errors import TirelabError
+from ..errors import unwritable_folder
 
 PREFIX = ".tirelab-"
 """How a folder begins that is being written; one that a power cut leaves can be deleted."""
@@ -34,13 +34,13 @@ def staged(folder: Path) -> Iterator[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         aside = Path(tempfile.mkdtemp(prefix=PREFIX, dir=folder))
     except OSError as error:
-        raise _refusal(folder, error) from None
+        raise unwritable_folder(folder, error) from None
     try:
         try:
             yield aside
         except OSError as error:
             if error.errno in FULL:
-                raise _refusal(folder, error) from None
+                raise unwritable_folder(folder, error) from None
             raise
         with _ctrl_c_later():
             try:
@@ -49,7 +49,7 @@ def staged(folder: Path) -> Iterator[Path]:
                     target.parent.mkdir(parents=True, exist_ok=True)
                     os.replace(file, target)
             except OSError as error:
-                raise _refusal(Path(error.filename2 or folder), error) from None
+                raise unwritable_folder(Path(error.filename2 or folder), error) from None
     finally:
         shutil.rmtree(aside, ignore_errors=True)
         with suppress(OSError):  # where something was written, it is not empty
@@ -73,7 +73,3 @@ def _ctrl_c_later() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
     if waiting and callable(before):
         before(*waiting[0])
-
-
-def _refusal(folder: Path, error: OSError) -> TirelabError:
-    return TirelabError(f"{folder} cannot be written ({error.strerror}); name another folder with --out")

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 from radialtire import write_tire
 
-from ..errors import TirelabError
+from ..errors import unwritable_folder
 from .outcome import DATA, DIAGNOSIS, TEST, TIRE, Replayed
 from .verdict import Verdict
 
@@ -31,7 +31,7 @@ def write_verdict(out: Path, content: Mapping[str, Any], verdict: Verdict) -> No
                 }
             ).write_csv(out / TEST)
     except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+        raise unwritable_folder(out, error) from None
 
 
 def write_samples(out: Path, groups: Sequence[tuple[str, Replayed]]) -> None:
@@ -55,4 +55,4 @@ def write_samples(out: Path, groups: Sequence[tuple[str, Replayed]]) -> None:
     try:
         pl.concat(tables).write_csv(out / DATA, float_precision=6)
     except OSError as error:
-        raise TirelabError(f"{out} cannot be written ({error.strerror}); name another with --out") from None
+        raise unwritable_folder(out, error) from None

@@ -17,7 +17,7 @@ from ..computing.staging import staged
 from ..computing.workers import Cores, work
 from ..diagnosis.diagnosis_file import Stated, read_stated
 from ..diagnosis.diagnosis_run import Diagnoser, diagnose_files
-from ..errors import TirelabError
+from ..errors import TirelabError, unwritable_folder
 from ..recordings.recording import read_recording
 from .commitment import add_commitment, derived_key, draw_and_commit, opened, read_commitments, trial_key
 from .figures import overview
@@ -92,9 +92,7 @@ def _claim(trials: BlindTrials) -> None:
         try:
             write_json(path, wanted)
         except OSError as error:
-            raise TirelabError(
-                f"{trials.folders.root}: cannot be written ({error.strerror}); name another with --out"
-            ) from None
+            raise unwritable_folder(trials.folders.root, error) from None
     elif (found := read_json(path)).get("schema") != SETTINGS_SCHEMA:
         raise TirelabError(
             f"{trials.folders.root} holds trials of another version of this rig; name another folder with --out"

@@ -276,5 +276,5 @@ def test_a_tire_file_that_is_gone_is_a_sentence(folder: Path, tmp_path: Path) ->
 
 def test_an_output_folder_that_cannot_be_made_is_a_sentence(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(TirelabError, match=r"cannot be written .*name another with --out"):
+    with pytest.raises(TirelabError, match=r"cannot be written .*name another folder with --out"):
         run(folder, tmp_path / "file" / "out")

@@ -32,5 +32,5 @@ def test_all_samples_with_what_they_were_used_for(tmp_path: Path) -> None:
 
 
 def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path) -> None:
-    with pytest.raises(TirelabError, match=r"cannot be written .*; name another with --out"):
+    with pytest.raises(TirelabError, match=r"cannot be written .*; name another folder with --out"):
         write_samples(tmp_path / "nowhere", (("fitted", replayed("slow", 50.0)),))
