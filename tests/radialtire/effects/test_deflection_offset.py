@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from driving import drive, only
 from published import hull1996 as article
-from radialtire import TireModel
+from radialtire import CATALOGUE, TireModel
 
 
 def test_it_shifts_the_curve() -> None:
@@ -26,3 +26,8 @@ def test_a_tire_that_touched_late_has_no_force_before() -> None:
     force = drive(only("deflection_offset", offset=-1e-3), [0.0, 1.0, 2.0], [0.5e-3, 1e-3, 1.5e-3])
     assert list(force[:2]) == [0.0, 0.0]
     assert force[2] > 0.0
+
+
+def test_it_is_what_the_gap_of_a_part_is() -> None:
+    assert CATALOGUE["deflection_offset"].holds_gap
+    assert not CATALOGUE["deflection_lag"].holds_gap

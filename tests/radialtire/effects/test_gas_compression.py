@@ -40,6 +40,11 @@ def test_the_loss_grows_with_the_stated_power() -> None:
     assert ratio == pytest.approx(8.0, rel=1e-4)
 
 
+def test_in_the_air_nothing_is_compressed() -> None:
+    tire = only("gas_compression", lost_volume=0.5, atmosphere=0.3)
+    assert drive(tire, [0.0, 1.0], [-1e-3, 0.0]).tolist() == [0.0, 0.0]
+
+
 def test_it_never_compresses_the_air_to_nothing() -> None:
     force = drive(only("gas_compression", lost_volume=0.5, power=4.0), [0.0, 1.0], [0.1, 0.3])
     assert np.all(np.isfinite(force))
