@@ -78,7 +78,9 @@ def whole_command(
     """
     names = {str(path) for path in given} if of else set()
     kept = [word for word in _without(ctx.meta[WORDS], added) if word not in names]
-    return shlex.join(["tirelab", str(ctx.info_name), *map(str, of), *kept, *added])
+    bare = kept.index("--") if "--" in kept else len(kept)  # behind it all words are files
+    kept[bare:bare] = added
+    return shlex.join(["tirelab", str(ctx.info_name), *map(str, of), *kept])
 
 
 def _without(given: Sequence[str], added: Sequence[str]) -> list[str]:

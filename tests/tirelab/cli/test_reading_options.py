@@ -47,6 +47,17 @@ class TestCompare:
         ]
         assert run(*proposed[1:]).exit_code == 0
 
+    def test_what_is_proposed_stands_before_files_behind_two_dashes(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """Their names may begin with one: all words behind them are files."""
+        write_rows(tmp_path / "-1 bar.csv", "time [s],deflection [cm],force [N]", *loading())
+        monkeypatch.chdir(tmp_path)
+        done = run("compare", "--", "-1 bar.csv")
+        proposed = shlex.split(done.stderr.splitlines()[-1].split("check: ", 1)[1])
+        assert proposed == ["tirelab", "compare", "--radius", "flat", "--", "-1 bar.csv"]
+        assert run(*proposed[1:]).exit_code == 0
+
     def test_what_has_to_be_replaced_is_said(self, tmp_path: Path) -> None:
         rows = [f"{0.1 * i:.1f},{4.0 * i:.1f},{10 * i}" for i in range(100)]
         (tmp_path / "a.csv").write_text("\n".join(["Time (s),Load (N),Encoder (counts)", *rows]) + "\n")

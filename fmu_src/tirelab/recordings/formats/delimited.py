@@ -17,7 +17,7 @@ from .clock import ClockError
 from .cut_short import cut_cell
 from .encoding import BY_BYTES, LOCAL
 from .layout import Layout, find_layout
-from .number_style import BYTE_ORDER_MARK, EXPONENTS, NumberStyle, with_plain_marks
+from .number_style import BYTE_ORDER_MARK, EXPONENTS, FORMULA, NumberStyle, with_plain_marks
 from .spaced import block_with_tabs
 from .table import Columns, FloatArray, Header, RecordingError, Wanted, listed, quoted
 from .text_rows import AnotherTable
@@ -168,7 +168,7 @@ def _read_blocks(pieces: _Pieces, reader: RowReader) -> bool:
                 block = block.replace(MINUS, b"-").replace(BYTE_ORDER_MARK.encode(), b"")
             if b"\0" in block:
                 block = ZEROS.sub(b"", block)
-            if any(mark.encode() in block for mark in EXPONENTS):
+            if any(mark.encode() in block for mark in (*EXPONENTS, FORMULA)):
                 block = with_plain_marks(block.decode(codec, "surrogateescape")).encode(
                     codec, "surrogateescape"
                 )

@@ -13,11 +13,15 @@ MAYBE_THOUSANDS = re.compile(r"\s*[+-]?[1-9]\d{0,2},\d{3}\s*", re.ASCII)
 EXPONENTS = ("D+", "D-", "d+", "d-")
 """What is in every text with a number in the double precision of Fortran."""
 
+FORMULA = '="'
+"""What is in every text with a cell that a spreadsheet is told to leave as it is: ="0.00"."""
+
 BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
 
 _PLAIN = re.compile(r"[+-]?\d*[.,]\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _MINUS = re.compile("\N{MINUS SIGN}(?=[\\d.,])")
 _EXPONENT = re.compile(r"(?<![\w.])([+-]?(?:\d+[.,]?\d*|[.,]\d+))[dD](?=[+-]\d{1,3}(?![\w.]))", re.ASCII)
+_FORMULA = re.compile(r'"=""([^"]*)"""|="([^"]*)"')
 _SPACES = " \u00a0\u202f\u2009'\u2019"
 _CERTAIN = (
     (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d+")),
@@ -59,8 +63,10 @@ class NumberStyle:
 
 def with_plain_marks(text: str) -> str:
     """Return a text whose numbers have the minus of a keyboard, not that of typography, and the exponent mark E where
-    Fortran writes D: 1.5D+01. Files that were joined have byte order marks within them, which are left out.
+    Fortran writes D: 1.5D+01. Files that were joined have byte order marks within them, which are left out, and cells
+    that a spreadsheet is to leave as they are, ="0.00", are between quotes alone.
     """
+    text = _FORMULA.sub(r'"\1\2"', text) if FORMULA in text else text
     text = text.replace(BYTE_ORDER_MARK, "") if BYTE_ORDER_MARK in text else text
     text = _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
     return _EXPONENT.sub(r"\1E", text) if any(mark in text for mark in EXPONENTS) else text

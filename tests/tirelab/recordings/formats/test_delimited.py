@@ -44,6 +44,18 @@ class TestText:
         path.write_text(text_table(separator, comma), encoding="utf-8")
         assert_the_recording(read_recording(path, radius="flat"), *note)
 
+    @pytest.mark.parametrize(("opened", "closed"), [('="', '"'), ('"=""', '"""')])
+    @pytest.mark.parametrize(("separator", "comma"), [(",", False), (",", True), (";", True), ("\t", False)])
+    def test_cells_that_a_spreadsheet_leaves_as_they_are(
+        self, tmp_path: Path, separator: str, comma: bool, opened: str, closed: str
+    ) -> None:
+        """Some programs write ="0.00", which Excel shows as it stands; saved again it is "=""0.00\"""."""
+        rows = [line.split("|") for line in text_table("|", comma).splitlines()]
+        text = "\n".join(separator.join(f"{opened}{cell}{closed}" for cell in row) for row in rows)
+        (tmp_path / "a.csv").write_text(text + "\n", encoding="utf-8")
+        notes = ("commas read as decimal commas",) if comma else ()
+        assert_the_recording(read_recording(tmp_path / "a.csv", radius="flat"), *notes)
+
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
     @pytest.mark.parametrize("separator", [";", ","])
     def test_the_minus_of_typography(self, tmp_path: Path, encoding: str, separator: str) -> None:
