@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,10 @@ START_OFFSET = 0.3
 """Distance, in standard deviations, from its bound at which the fit of an optional parameter starts: at the bound
 itself the slope of some is zero."""
 
+MOST_UNUSUAL = 3.0
+"""Distance, in standard deviations of its prior, up to which a form may lie: its whole range, as the priors' sources
+state them. A long recording can pay for any form, and what asks for a more unusual one is another effect's."""
+
 KINKS = RAMPS.shape[1]
 """Number of kinks of a refitted law."""
 
@@ -59,6 +63,7 @@ class FreeParameter:
     optional: whether the plain form of the effect keeps it at the value `plain`
     group: number of the group whose prior's scale is found by the evidence; 0: the prior is as declared
     signed: whether it is a strength of either sign, which may lie far outside the spread of its prior (see `widths`)
+    dispensable: whether it is one of several strengths of its effect, of which some may be next to nothing
     """
 
     owner: str
@@ -76,6 +81,7 @@ class FreeParameter:
     plain: float = 0.0
     group: int = 0
     signed: bool = False
+    dispensable: bool = False
 
     def value(self, position: float) -> float:
         """Return the value at a position on the prior's axis, within the bounds."""
@@ -99,11 +105,13 @@ class FreeParameter:
 
 def parameters_of_effect(name: str, scales: Scales) -> tuple[FreeParameter, ...]:
     """Return the free parameters of an effect, in the order of its parameters."""
-    return tuple(
+    free = tuple(
         _free(name, i, p, scales)
         for i, p in enumerate(CATALOGUE[name].parameters)
         if p.role != "reading" and p.prior is not None
     )
+    strengths = [p for p in free if p.logarithm and CATALOGUE[name].parameters[p.index].role == "strength"]
+    return tuple(replace(p, dispensable=p in strengths and len(strengths) > 1) for p in free)
 
 
 def parameters_of_law(
@@ -153,6 +161,10 @@ def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
         low = math.log(low) if low > 0.0 else centre - 12.0 * spread
         high = math.log(high)
     low, high = (low - centre) / spread, (high - centre) / spread
+    if p.role == "form":
+        start = math.log(max(p.start, 1e-300)) if logarithm else p.start
+        plain = (start - centre) / spread if p.optional else 0.0
+        low, high = max(low, min(-MOST_UNUSUAL, plain)), min(high, max(MOST_UNUSUAL, plain))
     return FreeParameter(
         *(name, index, p.name, p.unit, centre, spread, logarithm, low, high),
         *(p.minimum, p.maximum, p.optional, p.start),
@@ -193,10 +205,17 @@ class EstimationProblem:
 
         They are 1, except for a strength of either sign: there max(|position|, 1), which makes the position likeliest.
         A scale of its own gives this prior the tails of a Cauchy law. Other strengths have a normal logarithm and may
-        be many times the usual one anyway.
+        be many times the usual one anyway. Of several strengths of one effect the largest makes it: a friction is
+        constant, in proportion to the load, or both. The others have such a scale below the centre of their priors.
         """
-        signed = np.array([p.signed for p in self.parameters], dtype=bool)
-        return np.where(signed, np.maximum(np.abs(positions), 1.0), 1.0)
+        most = {p.owner: -np.inf for p in self.parameters}
+        for p, z in zip(self.parameters, positions, strict=True):
+            most[p.owner] = max(most[p.owner], z) if p.dispensable else most[p.owner]
+        pairs = list(zip(self.parameters, positions, strict=True))
+        free = np.array(
+            [p.signed or (p.dispensable and z < min(most[p.owner], 0.0)) for p, z in pairs], dtype=bool
+        )
+        return np.where(free, np.maximum(np.abs(positions), 1.0), 1.0)
 
     @property
     def shaped(self) -> bool:

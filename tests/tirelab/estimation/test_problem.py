@@ -73,6 +73,38 @@ def test_a_strength_of_either_sign_may_lie_far_beyond_its_priors_spread() -> Non
         np.testing.assert_allclose(found, np.where(signed, max(abs(position), 1.0), 1.0))
 
 
+def test_of_two_strengths_of_an_effect_the_lesser_may_be_next_to_nothing() -> None:
+    """A friction is constant, in proportion to the load, or both. The larger one has the prior that is declared."""
+    values = {"rate_independent_hysteresis": values_of("rate_independent_hysteresis")}
+    problem = problem_of(DATASET, values, plain=True)
+    assert [p.label for p in problem.parameters[:2]] == ["slip_force", "load_share"]
+
+    def widths(slip: float, share: float) -> list[float]:
+        return problem.widths(np.array([slip, share, *[-4.0] * (len(problem.parameters) - 2)])).tolist()
+
+    others = [1.0] * (len(problem.parameters) - 2)
+    assert widths(-3.0, 0.5) == [3.0, 1.0, *others]
+    assert widths(0.5, -3.0) == [1.0, 3.0, *others]
+    assert widths(-2.0, -3.0) == [1.0, 3.0, *others]
+    assert widths(-0.5, 4.0) == [1.0, 1.0, *others]
+
+
+def test_a_form_lies_within_three_standard_deviations_of_its_prior_or_where_it_is_plain() -> None:
+    """99.7 % of a normal law; towards its plain value, such as none of an optional part, it may go on."""
+    for name, effect in CATALOGUE.items():
+        for p in parameters_of_effect(name, DATASET.scales):
+            parameter = effect.parameters[p.index]
+            if parameter.role == "form":
+                plain = p.position(parameter.start) if parameter.optional else 0.0
+                assert p.value(plain) == pytest.approx(parameter.start, abs=1e-12) or not parameter.optional
+                assert min(plain, -3.0) - 1e-9 <= p.low <= p.high <= max(plain, 3.0) + 1e-9
+    (rebound,) = [
+        p for p in parameters_of_effect("rate_independent_hysteresis", DATASET.scales) if p.label == "rebound"
+    ]
+    assert rebound.value(-99.0) == pytest.approx(1.5**-3)
+    assert rebound.value(99.0) == pytest.approx(1.5**3)
+
+
 def test_a_law_on_one_surface_has_no_parameters_of_a_surface_of_its_own() -> None:
     one, two = parameters_of_law(1), parameters_of_law(2)
     # Of two surfaces the common part and a surface's own together spread as one part does alone.
