@@ -76,7 +76,7 @@ def summarise(
     said += [_capital(CATALOGUE[name].statement) + "." for name in names if name != REFITTED_LAW]
     said.append(errors_told(bool(names), bool(regressions), fit))
     if regressions:
-        said.append(_remainder(regressions))
+        said.append(_remainder(regressions, fit))
     said.append(sure(confidence))
     if alternatives:
         said.append(_alternatives([*names, *([UNKNOWN] if regressions else [])], alternatives))
@@ -205,8 +205,11 @@ def errors_told(corrected: bool, unexplained: bool, fit: FitErrors) -> str:
     return " ".join(found)
 
 
-def _remainder(regressions: Sequence[ResidualModel]) -> str:
-    """Return what the unexplained remainder depends on, and how far its best regression reduces the error."""
+def _remainder(regressions: Sequence[ResidualModel], fit: FitErrors) -> str:
+    """Return what the unexplained remainder depends on, and how far its best regression reduces the error.
+
+    What repeats within the recordings need not hold in others: a regression that raises their error is no description.
+    """
     by = listed([dependence(c.by) for c in regressions])
     asked = [c for c in regressions if math.isfinite(c.r2)]
     if not asked:
@@ -217,6 +220,13 @@ def _remainder(regressions: Sequence[ResidualModel]) -> str:
             f"The remainder depends on {by}, but no regression of it repeats on held-out blocks of time. "
             "Noise that is as slow as the motion leaves this as well: record for as long at rest."
         )
+    asked = [c for c in asked if c.r2 >= REPEATS and not c.held_out_after > fit.held_out_after]
+    if not asked:
+        return (
+            f"The remainder depends on {by}. Regressions of it repeat on blocks of time of the fitted recordings, but "
+            "raise the error on held-out data: they are of use nowhere else."
+        )
+    best = max(asked, key=lambda c: c.r2)
     over = "it" if len(regressions) == 1 else dependence(best.by)
     held_out = math.isfinite(best.held_out_after)
     also = f", and to {newtons(best.held_out_after)} on held-out data" if held_out else ""

@@ -146,6 +146,19 @@ def test_a_curve_that_does_not_repeat_is_not_offered():
     assert "6.40 N" not in told
 
 
+def test_a_curve_that_raises_the_error_of_held_out_data_is_not_offered():
+    """The best one of the fitted recordings, over the rate, makes 33 N of 32.4; that over the deflection does not."""
+    rate = replace(regressed("rate", 0.95), after=2.04, held_out_after=33.0)
+    other = replace(regressed("deflection", 0.5), held_out_after=6.5)
+    told = summarise((), (), (rate,), 0.85, STAYED)
+    assert "raise the error on held-out data" in told
+    assert "2.04 N" not in told
+    told = summarise((), (), (rate, other), 0.85, STAYED)
+    assert (
+        "A regression over the deflection reduces the RMS error to 6.40 N, and to 6.50 N on held-out" in told
+    )
+
+
 def test_whether_a_curve_repeats_is_not_known_of_what_was_driven_once():
     told = summarise((), (), (regressed("time", float("nan")),), 0.85, STAYED)
     assert "Whether it repeats is not known: drive the motion twice." in told
