@@ -20,7 +20,7 @@ from .channels import (
 from .formats import Header
 from .matching import Match
 from .units import is_unit, meant_unit, measures
-from .vocabulary import begins_like, counts_rows, is_strained
+from .vocabulary import begins_like, counts_rows, is_measured, is_strained
 
 FloatArray = NDArray[np.float64]
 
@@ -126,8 +126,9 @@ def guessed_columns(
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
     channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
-    moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither. A counter, a
-    strain and a stress are neither, nor is what was sampled another number of times.
+    moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither, and what was
+    asked for is no reading. A counter, a strain and a stress are neither, nor is what was sampled another number of
+    times.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -175,6 +176,7 @@ def guessed_columns(
             guessed[name] = said[0]
             free.remove(said[0])
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
+    free = [i for i in free if is_measured(headers[i].name)]
     clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1
     if len(free) > len(both) and clock in values:
         rates = rates_among({i: values[i] for i in {*free, *places.values()} - {clock}}, values[clock])

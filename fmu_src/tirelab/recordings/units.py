@@ -39,6 +39,15 @@ OF_A_SPECIMEN = {
 ANGLES = frozenset({"rad", "mrad", "radian", "radians", "deg", "degree", "degrees", "°", "rev", "turn"})
 """Units of the angle that a test of torsion states in place of a length."""
 
+NO_UNITS = frozenset(
+    {
+        *("rod", "pole", "perch", "link", "chain", "hand", "league", "fathom", "shake", "rd", "li", "fur"),
+        *("point", "pica", "cicero", "didot", "px", "pp", "bp", "pc", "au", "ly", "parsec", "th"),
+    }
+)
+"""Lengths and times of surveyors, printers, screens and astronomers, in pint's names: at the end of the name of a
+column they are a part of a machine, `position_link`, or what was asked for, `set_point`; a pixel has any size."""
+
 # Names and small exponents only: pint would also work out 9**9**9 for us.
 _WORD = r"[^\W\d_]+(?:_[^\W\d_]+)*"
 _UNIT = re.compile(rf"[°Δ%]?{_WORD}(?:(?:\^|\*\*)?-?[1-4]|[²³])?")
@@ -160,7 +169,7 @@ def conversion(unit: str, si: str) -> Conversion:
 def _parsed(text: str) -> "pint.Unit | None":
     """Return the unit that pint reads in a text; None where it knows none."""
     try:
-        return _registry().Unit(text) if all(map(_UNIT.fullmatch, _JOINT.split(text))) else None
+        return _registry().Unit(text) if all(map(_is_word_of_unit, _JOINT.split(text))) else None
     except Exception:  # pint raises whatever its tokenizer meets: AttributeError, AssertionError, ...
         return None
 
@@ -217,6 +226,10 @@ def _stand_in(unit: str, si: str) -> str:
     return "N" if _registry().Unit(spelled).dimensionality == torque else ""
 
 
+def _is_word_of_unit(word: str) -> bool:
+    return bool(_UNIT.fullmatch(word)) and not {word.lower(), word.lower().removesuffix("s")} & NO_UNITS
+
+
 @lru_cache(maxsize=MOST_TEXTS)
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of anything that pint knows, or of a share: V, deg, N/mm, %."""
@@ -224,7 +237,7 @@ def is_unit(text: str) -> bool:
     words = _JOINT.split(text.strip())
     if text.strip() in ("%", "-"):
         return True
-    if not all(_UNIT.fullmatch(word) for word in words):
+    if not all(map(_is_word_of_unit, words)):
         return False
     try:
         _registry().Unit(text)

@@ -248,6 +248,16 @@ def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: P
     assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
 
 
+def test_what_was_asked_for_is_no_reading(tmp_path: Path) -> None:
+    """A ventilator and a test lung: the pressure that was set, before the one that was read."""
+    time, deflection, force = loading()
+    names = "time(sec),pc_setpoint,lung,volume"
+    path = write_rows(tmp_path / "a.csv", names, time, np.sign(deflection - 1.0), force, 900.0 * force)
+    assert proposed(path)[:2] == ["--columns", "deflection=#3,force=#4"]
+    path = write_rows(tmp_path / "b.csv", "time [s],set_point,volume", time, np.sign(force - 9.0), force)
+    assert proposed(path)[:2] == ["--columns", "deflection=NAME,force=NAME"]
+
+
 def test_what_counts_the_rows_is_no_force(tmp_path: Path) -> None:
     """As pandas writes its index into a file of HDF5, beside the block of values."""
     time, deflection, force = loading()

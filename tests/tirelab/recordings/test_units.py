@@ -386,3 +386,18 @@ def test_a_unit_of_another_size_is_never_offered(unit: str, si: str, likely: str
     with pytest.raises(UnitError) as caught:
         conversion(unit, si)
     assert caught.value.likely == likely
+
+
+@pytest.mark.parametrize("word", ["rod", "link", "hands", "point", "chain", "px", "pc", "Pole"])
+def test_words_of_machines_and_screens_are_no_units(word: str) -> None:
+    """To pint a rod is 5.03 m, a hand 0.1 m, a point 1/72 in and a pixel 1/96 in."""
+    assert not is_unit(word)
+    with pytest.raises(UnitError, match="unknown unit"):
+        conversion(word, "m")
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("mil", 2.54e-5), ("thou", 2.54e-5), ("in", 0.0254), ("ft", 0.3048)]
+)
+def test_lengths_of_machines_are(unit: str, size: float) -> None:
+    assert conversion(unit, "m").multiplied == pytest.approx(size)
