@@ -208,14 +208,13 @@ class EstimationProblem:
         be many times the usual one anyway. Of several strengths of one effect the largest makes it: a friction is
         constant, in proportion to the load, or both. The others have such a scale below the centre of their priors.
         """
-        most = {p.owner: -np.inf for p in self.parameters}
-        for p, z in zip(self.parameters, positions, strict=True):
-            most[p.owner] = max(most[p.owner], z) if p.dispensable else most[p.owner]
         pairs = list(zip(self.parameters, positions, strict=True))
-        free = np.array(
-            [p.signed or (p.dispensable and z < min(most[p.owner], 0.0)) for p, z in pairs], dtype=bool
-        )
-        return np.where(free, np.maximum(np.abs(positions), 1.0), 1.0)
+        most: dict[str, float] = {}
+        for p, position in pairs:
+            if p.dispensable:
+                most[p.owner] = max(most.get(p.owner, -math.inf), position)
+        free = [p.signed or (p.dispensable and z < min(most[p.owner], 0.0)) for p, z in pairs]
+        return np.where(np.array(free, dtype=bool), np.maximum(np.abs(positions), 1.0), 1.0)
 
     @property
     def shaped(self) -> bool:
