@@ -21,7 +21,7 @@ BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
 _PLAIN = re.compile(r"[+-]?\d*[.,]\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _MINUS = re.compile("\N{MINUS SIGN}(?=[\\d.,])")
 _EXPONENT = re.compile(r"(?<![\w.])([+-]?(?:\d+[.,]?\d*|[.,]\d+))[dD](?=[+-]\d{1,3}(?![\w.]))", re.ASCII)
-_FORMULA = re.compile(r'"=""([^"]*)"""|="([^"]*)"')
+_FORMULA = re.compile(r'"=""([^"]*)"""|(?<!\w)="([^"]*)"')
 _SPACES = " \u00a0\u202f\u2009'\u2019"
 _CERTAIN = (
     (".", ",", re.compile(r"[+-]?[1-9]\d{0,2}(?:\.\d{3})+,\d+")),

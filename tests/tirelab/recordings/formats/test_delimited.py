@@ -56,6 +56,11 @@ class TestText:
         notes = ("commas read as decimal commas",) if comma else ()
         assert_the_recording(read_recording(tmp_path / "a.csv", radius="flat"), *notes)
 
+    def test_an_attribute_above_the_table_is_no_such_cell(self, tmp_path: Path) -> None:
+        (tmp_path / "a.csv").write_text('# machine="press 2"\n' + text_table(","), encoding="utf-8")
+        provenance = read_recording(tmp_path / "a.csv", radius="flat").provenance
+        assert any('machine="press 2"' in line for line in provenance), provenance
+
     @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
     @pytest.mark.parametrize("separator", [";", ","])
     def test_the_minus_of_typography(self, tmp_path: Path, encoding: str, separator: str) -> None:
