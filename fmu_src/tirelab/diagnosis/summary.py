@@ -214,19 +214,19 @@ def _remainder(regressions: Sequence[ResidualModel], fit: FitErrors) -> str:
     asked = [c for c in regressions if math.isfinite(c.r2)]
     if not asked:
         return f"The remainder depends on {by}. Whether it repeats is not known: drive the motion twice."
-    best = max(asked, key=lambda c: c.r2)
-    if best.r2 < REPEATS:
+    repeating = [c for c in asked if c.r2 >= REPEATS]
+    if not repeating:
         return (
             f"The remainder depends on {by}, but no regression of it repeats on held-out blocks of time. "
             "Noise that is as slow as the motion leaves this as well: record for as long at rest."
         )
-    asked = [c for c in asked if c.r2 >= REPEATS and not c.held_out_after > fit.held_out_after]
-    if not asked:
+    holding = [c for c in repeating if not c.held_out_after > fit.held_out_after]
+    if not holding:
         return (
             f"The remainder depends on {by}. Regressions of it repeat on blocks of time of the fitted recordings, but "
             "raise the error on held-out data: they are of use nowhere else."
         )
-    best = max(asked, key=lambda c: c.r2)
+    best = max(holding, key=lambda c: c.r2)
     over = "it" if len(regressions) == 1 else dependence(best.by)
     held_out = math.isfinite(best.held_out_after)
     also = f", and to {newtons(best.held_out_after)} on held-out data" if held_out else ""

@@ -36,6 +36,8 @@ def in_si(value: float, unit: str, si: str) -> float:
         (1.0, "\N{GREEK SMALL LETTER MU}m", "m", 1e-6),
         (1.0, "in", "m", 0.0254),
         (1.0, "ft", "m", 0.3048),
+        (1.0, "mil", "m", 2.54e-5),
+        (1.0, "thou", "m", 2.54e-5),
         (1.0, "kN", "N", 1000.0),
         (1.0, "lbf", "N", 4.4482216152605),
         (1.0, "kgf", "N", 9.80665),
@@ -394,10 +396,3 @@ def test_words_of_machines_and_screens_are_no_units(word: str) -> None:
     assert not is_unit(word)
     with pytest.raises(UnitError, match="unknown unit"):
         conversion(word, "m")
-
-
-@pytest.mark.parametrize(
-    ("unit", "size"), [("mil", 2.54e-5), ("thou", 2.54e-5), ("in", 0.0254), ("ft", 0.3048)]
-)
-def test_lengths_of_machines_are(unit: str, size: float) -> None:
-    assert conversion(unit, "m").multiplied == pytest.approx(size)
