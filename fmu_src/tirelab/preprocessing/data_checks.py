@@ -88,7 +88,7 @@ def check_signal(
     """
     for record, name, level in zip(dataset.experiments, names, levels, strict=True):
         motion = record.motion
-        travel = float(np.sqrt(np.mean(np.diff(motion.deflection) ** 2)))
+        travel = float(np.sqrt(np.mean(_steps_in_motion(motion.deflection) ** 2)))
         if motion.noise > 0.3 * float(np.std(motion.deflection)):
             raise PoorRecording(
                 f"the deflection of recording {name} is noise only; check that the displacement sensor was connected"
@@ -117,6 +117,14 @@ def check_signal(
                 f"readings ({plain(level, 3)} N, the deflection's through the stiffness with it); check the units, "
                 "or press deeper"
             )
+
+
+def _steps_in_motion(deflection: FloatArray) -> FloatArray:
+    """Return the sizes of the steps between samples, each at most as large as its larger neighbour: a single step
+    between two holds is no cycle that is sampled too seldom.
+    """
+    steps = np.pad(np.abs(np.diff(deflection)), 1)
+    return np.asarray(np.minimum(steps[1:-1], np.maximum(steps[:-2], steps[2:])))
 
 
 def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) -> float:

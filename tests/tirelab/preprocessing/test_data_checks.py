@@ -159,6 +159,16 @@ def test_a_force_that_relaxes_in_a_hold_is_not_refused() -> None:
     check_signal(raw_dataset_of([held], TireModel()), [held.name], [0.0])
 
 
+def test_a_step_within_one_sample_that_is_held_is_no_cycle_sampled_once() -> None:
+    """Two minutes of rest, read each second: the way in and the way back take a sample each."""
+    time = np.arange(120.0)
+    deflection = np.where((time > 1.0) & (time < 118.0), 0.01, 0.0)
+    force = 4e4 * deflection * (0.3 + 0.7 * np.exp(-time / 20.0))
+    held = Recording("held.csv", time, deflection, np.full(120, np.inf), force)
+    assert np.sqrt(np.mean(np.diff(deflection) ** 2)) > 0.7 * np.std(deflection)
+    check_signal(raw_dataset_of([held], TireModel()), [held.name], [0.0])
+
+
 CYCLE_TIME = np.linspace(0.0, 6.0, 2401)
 MOTION = 0.012 - 0.012 * np.cos(2.0 * np.pi * 0.5 * CYCLE_TIME)
 STIFFENING_FORCE = 8e4 * MOTION * (1.0 + 30.0 * MOTION)
