@@ -17,10 +17,11 @@ from pathlib import Path
 from ..errors import TirelabError
 from .formats import LOADERS, TEXT_SUFFIXES, Header, RecordingError, open_table
 from .formats.excel import ExcelTable
-from .matching import SeveralTrials, match_channels, recognised
+from .matching import match_channels, recognised
 from .metadata import read_sidecar
 from .origin import Origin
 from .pieces import split_piece
+from .side_by_side import SeveralTrials
 from .units import measures
 
 HEAD = 65_536

@@ -23,11 +23,19 @@ from .channels import (
 from .formats import Header, RecordingError
 from .formats.table import listed, quoted
 from .origin import Origin
+from .side_by_side import (
+    NUMBER,
+    SeveralTrials,
+    in_own_test,
+    no_such_trial,
+    number_within,
+    of_trial,
+    trials_in,
+    width_of_a_test,
+)
 from .units import measures
 
 _COUNTED_AGAIN = re.compile(r"^(?:compressive|tensile) ")
-
-_NUMBER = re.compile(r"[+-]?\s*#(\d{1,6})", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -70,16 +78,9 @@ def match_channels(
 
     Errors: RecordingError when a column named is not there, or several may be the one of a channel.
     """
-    width = len(headers) if time_axis is not None else _width_of_a_test(headers)
+    width = len(headers) if time_axis is not None else width_of_a_test(headers)
     equal = None if width == len(headers) else _of_equal_tests(origin, headers, width, columns, trial)
     return equal or _matched(origin, headers, time_axis, columns, trial)
-
-
-def _width_of_a_test(headers: Sequence[Header]) -> int:
-    """Return after how many columns the names begin again, all columns being such tests; the number of columns else."""
-    texts = [header.text for header in headers]
-    widths = (width for width in range(2, len(texts) // 2 + 1) if len(texts) % width == 0)
-    return next((width for width in widths if texts[width:] == texts[:-width]), len(texts))
 
 
 def _of_equal_tests(
@@ -93,13 +94,13 @@ def _of_equal_tests(
     """
     tests = len(headers) // width
     if trial is not None and not 1 <= trial <= tests:
-        raise _no_such_trial(origin, tests)
-    numbered = filter(None, (_NUMBER.fullmatch(text.strip()) for text in columns.values()))
+        raise no_such_trial(origin, tests)
+    numbered = filter(None, (NUMBER.fullmatch(text.strip()) for text in columns.values()))
     numbers = [int(number[1]) for number in numbered]
     if trial is None and numbers and (max(numbers) > width or _complete(origin, headers, columns)):
         return None
     first = width * ((trial or 1) - 1)
-    own = {name: _within(text, first, width) for name, text in columns.items()}
+    own = {name: number_within(text, first, width) for name, text in columns.items()}
     try:
         found = _matched(origin, headers[first : first + width], None, own, None)
     except SeveralTrials:
@@ -116,14 +117,6 @@ def _complete(origin: Origin, headers: Sequence[Header], columns: Mapping[str, s
         return not _matched(origin, headers, None, columns, None).missing
     except RecordingError:
         return False
-
-
-def _within(text: str, first: int, width: int) -> str:
-    """Return a number of a column in the whole table as that in the test that begins after `first` columns."""
-    found = _NUMBER.fullmatch(text.strip())
-    if found is None or not first < int(found[1]) <= first + width:
-        return text
-    return text.replace(found[1], str(int(found[1]) - first))
 
 
 def _matched(
@@ -145,9 +138,13 @@ def _matched(
             continue
         found[channel.name] = _found(headers, channel, assigned)
     found |= _on_axis_of_force(headers, found)
-    trials = _trials(found)
+    trials = trials_in(found)
     if trials > 1:
-        found = _of_trial(origin, found, trials, trial)
+        all_found, found = found, of_trial(origin, found, trials, trial)
+        for name, match in matches.items():
+            if NUMBER.fullmatch(columns[name].strip()):
+                own = in_own_test(headers, all_found, match.index, trial or 1)
+                matches[name] = replace(match, index=own)
     elif trial is not None and trial > 1 and not _names_a_test(headers, columns):
         raise RecordingError(
             f"{origin}: has no trial {trial} side by side with others; leave out @trial{trial}"
@@ -262,53 +259,10 @@ def _in_fitting_units(headers: Sequence[Header], channel: Channel, found: list[i
     return [i for i in found if i in fitting or not units[i]] if fitting else found
 
 
-def _trials(found: Mapping[str, Sequence[int]]) -> int:
-    """Return how many tests stand side by side: as many deflections as forces, in turn, and one time or as many."""
-    deflections, forces = found.get("deflection", ()), found.get("force", ())
-    count = len(forces)
-    if count < 2 or len(deflections) != count or len(found.get("time", ())) not in (0, 1, count):
-        return 1
-    starts = [min(pair) for pair in zip(deflections, forces, strict=True)]
-    ends = [max(pair) for pair in zip(deflections, forces, strict=True)]
-    apart = all(end < start for end, start in zip(ends, starts[1:], strict=False))
-    return count if apart else 1
-
-
 def _names_a_test(headers: Sequence[Header], columns: Mapping[str, str]) -> bool:
     """Whether the user names the columns of one test, in a table that is not known to hold a single one."""
     force = next(channel for channel in CHANNELS if channel.name == "force")
     return {"deflection", "force"} <= columns.keys() and len(_found(headers, force, set())) != 1
-
-
-def _of_trial(
-    origin: Origin, found: Mapping[str, list[int]], trials: int, trial: int | None
-) -> dict[str, list[int]]:
-    """Return the columns of one of the tests side by side; a column that all share stays."""
-    if trial is None:
-        raise SeveralTrials(origin, trials)
-    if not 1 <= trial <= trials:
-        raise _no_such_trial(origin, trials)
-    return {
-        name: [columns[trial - 1]] if len(columns) == trials else columns if len(columns) == 1 else []
-        for name, columns in found.items()
-    }
-
-
-def _no_such_trial(origin: Origin, trials: int) -> RecordingError:
-    return RecordingError(f"{origin}: has {trials} trials side by side; name @trial1 to @trial{trials}")
-
-
-class SeveralTrials(RecordingError):
-    """Several tests stand side by side in a table, and none is named."""
-
-    def __init__(self, origin: Origin, trials: int) -> None:
-        how = (
-            f"{origin}@trial1 to {origin}@trial{trials}"
-            if origin.kind == "file"
-            else 'columns={"force": "#3", ...}'
-        )
-        super().__init__(f"{origin}: holds {trials} trials side by side; name one: {how}")
-        self.trials = trials
 
 
 def several_columns(

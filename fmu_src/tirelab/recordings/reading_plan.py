@@ -13,11 +13,12 @@ from .channels import EXAMPLE_UNITS, UNIT_OF, known_channel, says_absolute, unit
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import SomeColumns, listed, quoted
 from .guessing import may_count_time, rises, stating_time
-from .matching import Match, Matches, SeveralTrials, match_channels, option_name, recognised, several_columns
+from .matching import Match, Matches, match_channels, option_name, recognised, several_columns
 from .metadata import Settings
 from .origin import Origin
 from .rows import OPTIONAL
 from .sampling import parse_interval, sampling_said
+from .side_by_side import SeveralTrials
 from .totals import total_force
 from .units import (
     Conversion,

@@ -194,6 +194,35 @@ class TestTrials:
         np.testing.assert_allclose(second.time, time)
         np.testing.assert_allclose(second.force, force / 2, rtol=1e-5)
 
+    def test_a_numbered_column_is_that_of_each_test_where_their_names_differ_in_numbers(
+        self, tmp_path: Path
+    ) -> None:
+        """As an indenter writes them: each channel with its clock. `#1` is the first test's in the first test alone."""
+        time, deflection, force = loading()
+        names = "T_{0}_Clock [s],Y_{0}_Fn [N],T_{0}_Clock [s],Y_{0}_Disp [mm]"
+        slower = 2.0 * time
+        rows = (time, force, time, 10.0 * deflection, slower, 2.0 * force, slower, 10.0 * deflection)
+        header = ",".join(map(names.format, (1, 2)))
+        path = write_rows(tmp_path / "a.csv", header, *rows)
+        for n in (1, 2):
+            with pytest.raises(RecordingError, match="--columns time=#1"):
+                read_recording(f"{path}@trial{n}", radius="flat")
+        first, second = (
+            read_recording(f"{path}@trial{n}", radius="flat", columns={"time": "#1"}) for n in (1, 2)
+        )
+        np.testing.assert_allclose(second.time, 2.0 * first.time, atol=1e-5)
+        np.testing.assert_allclose(second.force, 2.0 * first.force, atol=0.011)  # six digits
+        whole = read_recording(f"{path}@trial2", radius="flat", columns={"time": "#7"})
+        np.testing.assert_array_equal(whole.time, second.time)
+
+    def test_a_numbered_column_that_all_tests_share_stays(self, tmp_path: Path) -> None:
+        time, deflection, force = loading()
+        header = "clock,Stroke 1 [cm],Load 1 [N],Stroke 2 [cm],Load 2 [N]"
+        path = write_rows(tmp_path / "a.csv", header, time, deflection, force, deflection, force / 2)
+        columns, units = {"time": "#1"}, {"time": "s"}
+        second = read_recording(f"{path}@trial2", radius="flat", columns=columns, units=units)
+        np.testing.assert_allclose(second.time, time)
+
     def test_two_gauges_and_one_cell_are_no_trials(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
         path = write_rows(
