@@ -12,7 +12,7 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect
 from ..planning.waveforms import Limits, another_pressure
-from ..preprocessing.motion import BoolArray, FloatArray
+from ..preprocessing.motion import FloatArray
 from ..preprocessing.noise import STILL
 from ..preprocessing.samples import RawDataset
 from .confidence import of_confounded
@@ -186,9 +186,10 @@ def insufficient_excitation(
     if ground and len(dataset.radii) == 1 and (not mountable or mountable - set(dataset.radii)):
         lacks.append("one surface only: press on a second surface")
     rates = [np.abs(e.motion.rate) for e in dataset.experiments]
-    typical = max(float(np.sqrt(np.mean(r**2))) for r in rates)
-    held = max(_longest_hold(e.time, np.abs(e.motion.rate) < STILL * typical) for e in dataset.experiments)
-    if hold and timed and held < LONG_ENOUGH:
+    # Over the way, not the time: where a load is held for long, the deflection creeps.
+    typical = max(float(r @ r / max(r.sum(), 1e-300)) for r in rates)
+    held = any(_is_held(e.time, e.motion.deflection, typical) for e in dataset.experiments)
+    if hold and timed and not held:
         lacks.append(f"no hold: hold 10 s at {_hold_level(dataset)}")
     if len({float(d) for e in dataset.experiments for d in np.unique(e.motion.direction)}) == 1:
         lacks.append("no way back: release it as slowly as it was loaded, and load it again")
@@ -218,8 +219,18 @@ def _traits(name: str) -> tuple[str, ...]:
     return CATALOGUE[name].traits if name in CATALOGUE else LAW_TRAITS
 
 
-def _longest_hold(time: FloatArray, still: BoolArray) -> float:
-    ends = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
-    return max(
-        (float(time[b - 1] - time[a]) for a, b in zip(ends[::2], ends[1::2], strict=True)), default=0.0
-    )
+def _is_held(time: FloatArray, deflection: FloatArray, speed: float) -> bool:
+    """Return whether a deflection [m] stays for LONG_ENOUGH where it is, beside its speed [m/s].
+
+    It is asked of whole stretches, since a gauge that trembles has rates, and a part creeps under a load that is held.
+    """
+    stretch, since = 0.5 * LONG_ENOUGH, time - time[0]
+    while stretch <= since[-1]:  # a hold of two stretches has a whole one
+        starts = np.flatnonzero(np.diff(since // stretch, prepend=-1.0))
+        moved = np.maximum.reduceat(deflection, starts) - np.minimum.reduceat(deflection, starts)
+        several = np.diff(starts, append=time.size) > 1
+        # The turn of a motion goes a quarter as far as the speed at its ends would.
+        if np.any(moved[:-1][several[:-1]] < 0.25 * STILL * speed * stretch):
+            return True
+        stretch *= 2.0
+    return False

@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 from drives import damped, flat_force, read, triangle
 from radialtire import TireModel
@@ -175,6 +176,28 @@ def test_holds_surfaces_and_cycles_that_are_missing_are_named() -> None:
     said = "; ".join(insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), press))
     for words in ("press on a second surface", "hold 10 s at 15 mm", "drive each cycle twice"):
         assert words in said
+
+
+@pytest.mark.parametrize(("held", "said"), [(120.0, False), (0.3, True)])
+def test_a_load_that_is_held_is_a_hold_though_the_part_creeps_and_the_gauge_trembles(
+    held: float, said: bool
+) -> None:
+    """A ramp of 5 s to 20 mm, and creep by 1 mm for each factor e of the time, read with 5 um of noise."""
+    time = np.arange(0.0, 5.0 + held, 0.02)
+    deflection = np.where(time < 5.0, 4e-3 * time, 0.02 + 1e-3 * np.log(np.maximum(time / 5.0, 1.0)))
+    creep = raw_dataset_of([read("creep", time, deflection, flat_force(deflection), 4)], TireModel())
+    lacks = insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), creep)
+    assert any(lack.startswith("no hold") for lack in lacks) == said
+
+
+@pytest.mark.parametrize(("period", "said"), [(20.0, True), (2000.0, False)])
+def test_the_turn_of_a_sine_is_no_hold_unless_it_lasts(period: float, said: bool) -> None:
+    """It is slower than a fiftieth of the mean speed for 1 s where the period is 250 s."""
+    time = np.arange(0.0, 2.0 * period, period / 1000.0)
+    deflection = 0.01 * (1.0 - np.cos(2.0 * np.pi * time / period))
+    sine = raw_dataset_of([read("sine", time, deflection, flat_force(deflection), 4)], TireModel())
+    lacks = insufficient_excitation(explained_by_sets(("inertia", 0.0, 1.0)), sine)
+    assert any(lack.startswith("no hold") for lack in lacks) == said
 
 
 def test_a_part_that_is_never_above_zero_is_held_within_its_own_deflections() -> None:
