@@ -20,7 +20,7 @@ from .channels import (
 from .formats import Header
 from .matching import Match
 from .units import is_unit, meant_unit, measures
-from .vocabulary import begins_like, counts_rows, is_measured, is_strained
+from .vocabulary import begins_like, counts_rows, is_measured, is_strained, stands_for
 
 FloatArray = NDArray[np.float64]
 
@@ -120,8 +120,8 @@ def guessed_columns(
     headers: Sequence[Header],
 ) -> dict[str, int]:
     """Return a likely column for each channel that has none: time rises, others go by their unit, else by their symbol
-    in small or large letters, the beginning of their name ("forc"), its end (`Machine_Load`) or its first word
-    (`Force_data`), else by their size.
+    in small or large letters, the beginning of their name ("forc"), what stands for them (an angle, a torque), its end
+    (`Machine_Load`) or its first word (`Force_data`), else by their size.
 
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
@@ -162,6 +162,11 @@ def guessed_columns(
         if name in missing and name not in guessed and len(alike) == 1:
             guessed[name] = alike[0]
             free.remove(alike[0])
+    for name in ("deflection", "force"):
+        turning = [i for i in free if stands_for(headers[i].name, name) and is_measured(headers[i].name)]
+        if name in missing and name not in guessed and turning:
+            guessed[name] = turning[0]  # of several joints the first
+            free.remove(turning[0])
     pairs = [(i, j) for i in stating["deflection"] for j in stating["force"]]
     if pairs and {"deflection", "force"} <= set(missing) - set(guessed):
         guessed["deflection"], guessed["force"] = min(pairs, key=lambda pair: abs(pair[0] - pair[1]))

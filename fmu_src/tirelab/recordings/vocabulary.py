@@ -7,17 +7,8 @@ import unicodedata
 
 FOREIGN: dict[str, tuple[str, ...]] = {
     "time": (
-        *(
-            "zeit",
-            "gesamtzeit",
-            "testzeit",
-            "prufzeit",
-            "pruefzeit",
-            "messzeit",
-            "versuchszeit",
-            "laufzeit",
-            "zeitstempel",
-        ),
+        *("zeit", "gesamtzeit", "testzeit", "prufzeit", "pruefzeit", "messzeit", "versuchszeit", "laufzeit"),
+        *("zeitstempel",),
         *("temps", "temps ecoule", "temps d essai", "horodatage"),
         *("czas", "godzina", "cas", "время", "общее время", "시간", "경과 시간", "시험 시간"),
         *("tempo", "tempo trascorso", "tempo decorrido", "tijd"),
@@ -243,9 +234,18 @@ SECOND = {
 BESIDE = {"deflection": ("displacement", "distance", "stroke", "travel"), "force": ("load",)}
 """English words for a channel of which a column may have the beginning."""
 
+STAND_INS = {
+    "deflection": frozenset(
+        {"angle", "rotation", "theta", "winkel", "drehwinkel", "angolo", "angulo", "角度"}
+    ),
+    "force": frozenset({"torque", "moment", "tau", "drehmoment", "couple", "coppia", "momento", "扭矩"}),
+}
+"""Quantities that stand for a channel in a test of torsion, proposed to be checked."""
+
 NOT_MEASURED = frozenset(
     {
         *("command", "cmd", "demand", "target", "setpoint", "set", "reference", "program", "error"),
+        *("desired", "des", "ref"),
         *("peak", "valley", "maximum", "max", "minimum", "min", "mean", "average", "amplitude", "limit"),
         *("soll", "sollwert", "consigne", "consigna", "mittelwert", "moyenne", "media"),
         *("borvarde", "medelvarde", "middelvaerdi", "keskiarvo", "hedef", "ortalama", "atlag", "gemiddelde"),
@@ -318,8 +318,7 @@ _COUNTED = re.compile(
 
 
 def plain(name: str) -> str:
-    """Return a name in small letters, without accents, dots and underscores: `Déplacement_traverse` becomes
-    `deplacement traverse`."""
+    """Return a name in small letters, without accents, dots and underscores: `Poids_mesuré` is `poids mesure`."""
     letters = unicodedata.normalize("NFKD", name.casefold().translate(_WHOLE_LETTERS))
     kept = "".join(c for c in letters if not unicodedata.combining(c))
     # what stays in parts, as the letters of Korean do, is put together again
@@ -346,6 +345,11 @@ def begins_like(name: str, channel: str) -> bool:
     short = plain(name)
     words = (channel, *map(plain, FOREIGN.get(channel, ())), *BESIDE.get(channel, ()))
     return len(short) >= SHORTEST and any(word.startswith(short) for word in words)
+
+
+def stands_for(name: str, channel: str) -> bool:
+    """Whether a word of a name is a quantity that stands for a channel in a test of torsion: `knee angle`, `tau_1`."""
+    return bool(STAND_INS.get(channel, frozenset()) & set(re.findall(r"[^\W\d_]+", plain(name))))
 
 
 def is_measured(name: str) -> bool:

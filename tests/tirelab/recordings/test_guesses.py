@@ -238,6 +238,24 @@ def test_an_angle_and_a_torque_are_guessed_to_stand_for_a_deflection_and_a_force
     assert proposed(path)[:4] == ["--columns", "deflection=#3,force=#2", "--units", "deflection=mm,force=N"]
 
 
+@pytest.mark.parametrize(
+    ("header", "columns"),
+    [
+        ("torque,angle", "deflection=#2,force=#1"),
+        ("Drehwinkel,Drehmoment", "deflection=#1,force=#2"),
+        ("tau_des,pos_meas,tau_meas", "force=#3"),
+    ],
+)
+def test_an_angle_and_a_torque_are_guessed_by_their_names_too(
+    tmp_path: Path, header: str, columns: str
+) -> None:
+    """Without units, and whichever has the larger numbers; what was asked for is no reading."""
+    *_, force = loading()
+    rows = (1e-3 * force, force, 2e-3 * force)[: header.count(",") + 1]
+    path = write_rows(tmp_path / "a.csv", header, *rows)
+    assert proposed(path)[1].endswith(columns)
+
+
 def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: Path) -> None:
     """An acceleration, a velocity and the force of a damper; by their order the acceleration was the force."""
     t = np.arange(0.0, 4.0, 0.005)
