@@ -11,7 +11,8 @@ What repeats at the same deflection is not noise, however quickly it changes: a 
 is what repeats at the same distance from a reversal: the knee of a loop, which a linear model follows only in part. So
 levels are also taken between visits of the same place; the smallest of all these levels is that of the noise. White
 noise is at most the smallest of all: whatever is compared, all of it differs. Nor is what is rougher where the motion
-is quicker noise: a stick and slip is, though no visit repeats it.
+is quicker noise: a stick and slip is, though no visit repeats it. Nor is what is louder in one part of the recording: a
+law that is far off leaves most where the part is loaded for the first time.
 
 The hum of the mains is noise that oscillates: it is set apart before all this.
 
@@ -27,6 +28,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
+from scipy.stats import f
 
 from .driven import FEWEST_EVENTS, FEWEST_LAGS, Driven, Visits
 from .hum import mains_hum
@@ -240,6 +242,25 @@ def _quickens(levels: _Levels, noise: Noise, driven: Driven) -> bool:
     return False
 
 
+def _swells(levels: _Levels, noise: Noise) -> bool:
+    """Return whether a noise is louder in one part of the recording than in all others, which an amplifier's is not.
+
+    There are FEWEST_LAGS parts, or fewer, of FEWEST_EVENTS memories each. F-test of the squared levels over a memory;
+    two memories are one independent value there, since the noise of a steep filter is alike for longer than one.
+    """
+    memory, seen = noise.memory, np.flatnonzero(levels.slow)
+    parts = np.array_split(seen, min(seen.size // (FEWEST_EVENTS * memory), FEWEST_LAGS) or 1)
+    for part in parts if len(parts) > 1 else []:
+        own = np.zeros(levels.slow.size, dtype=bool)
+        own[part] = True
+        both = own, levels.slow & ~own
+        loud, other = (level_of(levels.residual, memory, where) for where in both)
+        free = [float(where.sum()) / (2.0 * memory) for where in both]
+        if len(parts) * f.sf((loud / max(other, 1e-300)) ** 2, *free) < NEGLIGIBLE:
+            return True
+    return False
+
+
 def _slow_lags(driven: Driven) -> tuple[tuple[int, ...], BoolArray]:
     """Return the doubled lags for which the motion is slow enough in a part of the recording, and that part (n,)."""
     change, bend = driven.rate * driven.interval, driven.acceleration * driven.interval**2
@@ -272,7 +293,7 @@ def _noise_at_plateau(levels: _Levels, driven: Driven) -> Noise | None:
     found = levels.beneath(found)
     if found.memory == 1:
         return found
-    if _quickens(levels, found, driven):
+    if _quickens(levels, found, driven) or _swells(levels, found):
         return levels.white(driven)
     visits = _seen_visits(driven, found.memory, levels.lags[-1], levels.slow)
     between = [[level_between(levels.residual, lag, *v) for lag in levels.lags] for v in visits]
@@ -300,7 +321,7 @@ def _noises_at_whole_variation(
         most, visits = local_rms(residual, lag, slow), _seen_visits(driven, found.memory, lag, slow)
         if found.memory == 1 or any(rises[last:]) or levels.values[last] * STAYS < most:
             continue
-        if levels.beneath(found) is not found or _quickens(levels, found, driven):
+        if levels.beneath(found) is not found or _quickens(levels, found, driven) or _swells(levels, found):
             continue
         between = [level_between(residual, lag, *v) for v in visits]
         apart = [most_apart(residual, found.memory, *v[:2]) for v in visits]

@@ -225,6 +225,22 @@ def test_filtered_noise_does_not_come_again(motion: FloatArray) -> None:
     assert taken <= 5
 
 
+@pytest.mark.parametrize(("louder", "memory"), [(1.0, (8, 16)), (3.0, (1,))])
+def test_what_is_louder_in_one_part_of_the_recording_is_no_noise(
+    louder: float, memory: tuple[int, ...]
+) -> None:
+    """One eighth of a filtered noise beside a twentieth of white noise: what a filter does not know is left to physics.
+
+    Third differences of the filtered noise add to those of the white one.
+    """
+    filtered = lfilter(*butter(2, 0.1), WHITE)
+    filtered /= np.std(filtered)
+    filtered[3000:4000] *= louder
+    found = noise_beside(filtered + np.random.default_rng(6).normal(0.0, 0.05, WHITE.size), MOTION)
+    assert found.memory in memory
+    assert 0.05 < found.level < 0.1 if memory == (1,) else found.level == pytest.approx(1.0, rel=0.25)
+
+
 def test_a_memory_that_visits_do_not_show_is_seen_by_the_whole_variation() -> None:
     """A slow and a quick sine come by each place at many rates: the levels between visits stay constant by chance."""
     time = np.arange(6000)
