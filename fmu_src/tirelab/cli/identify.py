@@ -180,7 +180,7 @@ def _part(
         reason = curve_advice(model, recordings) if misfit else ""
         if reason:
             misfit = f"{reason}: `{words.identify(words.recordings, CURVE, tire)}`{words.then(tire)}"
-        misfit = _advice_on_holds(found, part, tire, words) or misfit
+        misfit = _advice_on_pieces(found, part, tire, words, misfit)
     if output.as_json:
         laws = [fit.to_dict() for fit in fits]
         output.result((), {"laws": laws, "tire": None if tire is None else str(tire)})
@@ -199,11 +199,9 @@ def _part(
         console.print(
             f"- the law that is proposed for a tire file: `{command}`", markup=False, soft_wrap=True
         )
-        if advice := _advice_on_holds(found, best, output.out, words):
+        then = f"{misfit} then" if misfit and not words.refused else misfit
+        if advice := _advice_on_pieces(found, best, output.out, words, then):
             console.print(f"- {advice}", markup=False, soft_wrap=True)
-        elif misfit:
-            then = "" if words.refused else " then"
-            console.print(f"- {misfit}{then}", markup=False, soft_wrap=True)
         curve = next(fit for fit in fits if fit.name == CURVE)
         if misfit and law.rmse > MISFIT * curve.rmse:
             own = words.identify(words.recordings, CURVE, output.out)
@@ -212,6 +210,33 @@ def _part(
                 markup=False,
                 soft_wrap=True,
             )
+
+
+def _advice_on_pieces(found: dict[Path, Recording], part: str, tire: Path, words: _Words, misfit: str) -> str:
+    """Return the advice to identify the law from pieces of the recordings where there is one, else that on the misfit,
+    "" for none; a law that fits has no first loading that is another one.
+    """
+    return _advice_on_holds(found, part, tire, words) or (
+        misfit and (_advice_on_first_loading(found, part, tire, words) or misfit)
+    )
+
+
+def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
+    """Return the advice to identify the law from the first loading, "" where it is not far from the later ones."""
+    from ..identification.first_loading import first_loading
+    from ..recordings.pieces import split_piece
+
+    firsts = {path: first for path, r in found.items() if (first := first_loading(r)) is not None}
+    if not firsts:
+        return ""
+    path, first = max(firsts.items(), key=lambda pair: pair[1].above)
+    file, piece = split_piece(path)
+    own = [f"{file}{piece.part}@{first.begins:.4g}s:{first.ends:.4g}s"]
+    return (
+        f"the first loading of {path.name} lies {plain(first.above, 2)} N from the later ones at the same deflection "
+        f"(the loop of these is {plain(first.loop, 2)} N wide): the part softens or takes a set, and this law is amid "
+        f"both; identify the first loading, `{words.identify(own, part, tire)}`{words.then(tire)}"
+    )
 
 
 def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
