@@ -200,7 +200,8 @@ def errors_told(corrected: bool, unexplained: bool, fit: FitErrors) -> str:
     if fit.held_out_after > AMPLIFIED * fit.held_out_noise_free:
         found.append(
             f"With the noise-free deflection as input it is {newtons(fit.held_out_noise_free)}; the rest "
-            "comes of rates that are tracked as the readings come: their delay, and the noise that is left in them."
+            "comes of the noise of its readings, and of rates, where an effect needs them: they are tracked as the "
+            "readings come, with a delay."
         )
     return " ".join(found)
 

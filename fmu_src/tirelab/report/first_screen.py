@@ -284,7 +284,8 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     likely = [titles.short_title(name) for name in _at_least(verdict, words.LIKELIER)]
     for shown in range(len(sets) - 1, 0, -1):
         if shown == 1 and likely:
-            yield f"Undecided; more likely than not: {titles.listed(likely)}"
+            each = "each " if len(likely) > 1 else ""
+            yield f"Undecided; {each}more likely than not: {titles.listed(likely)}"
         others = len(sets) - shown
         more = f"{others} other{'s' if others > 1 else ''}"
         yield f"Undecided: {titles.listed([*sets[:shown], more], 'or')}"

@@ -210,7 +210,7 @@ DECIDED = 0.5
 
 LIKELIEST = "the likeliest one is shown"
 OTHER_LIKELIER = "an alternative is likelier"
-NONE_LIKELY = "no explanation is likely"
+NONE_LIKELY = "no set of effects is likely"
 
 
 NEAR = 0.5

@@ -40,7 +40,7 @@ def test_an_effect_is_stated_with_the_improvement_on_held_out_data():
 
 def test_amplified_reading_noise_is_separated_from_the_error_of_the_tire():
     fit = FitErrors(6.0, 26.4, 9.1, 26.5, 9.2, "recordings given", 6.2)
-    assert "With the noise-free deflection as input it is 6.20 N; the rest comes of rates" in summarise(
+    assert "With the noise-free deflection as input it is 6.20 N; the rest comes of the noise" in summarise(
         (FRICTION,), (), (), 0.85, fit
     )
     assert "noise-free" not in summarise(
@@ -84,11 +84,13 @@ def test_what_would_reduce_the_error_is_told_where_nothing_is_named(refused: boo
 def test_an_undecided_verdict_is_not_called_the_likeliest_beside_a_likelier_one():
     others = [Alternative(("inertia",), -3.0, "one speed", 0.14)]
     unsure = replace(FRICTION, probability=0.6)
-    assert summarise((unsure,), others, (), 0.06, STAYED).startswith("Undecided; no explanation is likely. ")
+    assert summarise((unsure,), others, (), 0.06, STAYED).startswith(
+        "Undecided; no set of effects is likely. "
+    )
     assert summarise((unsure,), others, (), 0.3, STAYED).startswith("Undecided; this is the likeliest ")
     nothing = [replace(others[0], probability=0.0)]
     assert summarise((unsure,), nothing, (), 0.004, STAYED).startswith(
-        "Undecided; no explanation is likely. "
+        "Undecided; no set of effects is likely. "
     )
     likely = [replace(others[0], probability=0.53)]
     assert summarise((unsure,), likely, (), 0.06, STAYED).startswith(

@@ -32,7 +32,7 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     told["verdict"]["alternative_details"] = [{"probability": None}, {"probability": 0.5}]
     assert "an alternative is likelier" in first_screen.lead(told)
     told["verdict"]["alternative_details"] = [{"probability": 0.3}]
-    assert "no explanation is likely" in first_screen.lead(told)
+    assert "no set of effects is likely" in first_screen.lead(told)
     first["probability"] = 0.6
     assert first_screen.headline(told).startswith("Undecided: relaxation + refitted law, ")
 
@@ -48,7 +48,9 @@ def test_an_effect_that_is_likely_leads_where_the_sets_are_too_long_for_a_line()
     lag["probability"], damping["probability"] = 0.57, 0.47
     assert first_screen.headline(told) == "Undecided; more likely than not: force lag"
     damping["probability"] = 0.52
-    assert first_screen.headline(told) == "Undecided; more likely than not: force lag and viscous damping"
+    assert (
+        first_screen.headline(told) == "Undecided; each more likely than not: force lag and viscous damping"
+    )
     lag["probability"] = damping["probability"] = 0.4
     assert "likely" not in first_screen.headline(told)
 
