@@ -153,9 +153,10 @@ def _exponent(fit: LawFit, recordings: Sequence[Recording]) -> float:
     exponent = fit.value("B")
     least, most = EXPONENT_BOUNDS
     if not least <= exponent <= most:
+        levels_off = "for a force that levels off, as of a metal that yields, --part piecewise; "
         raise TirelabError(
             f"the law {fit.name} has B = {plain(exponent, 3)}, and a tire file holds {least:g} to {most:g}; "
-            f"{_other_laws(recordings)}"
+            f"{levels_off if 0.0 < exponent < least else ''}{_other_laws(recordings)}"
         )
     return exponent
 

@@ -128,7 +128,7 @@ def guessed_columns(
     channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
     moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither, and what was
     asked for is no reading. A counter, a strain and a stress are neither, nor is what was sampled another number of
-    times.
+    times. Beside a strain and a stress nothing is guessed by its size: these are the readings, by the specimen's size.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -186,7 +186,8 @@ def guessed_columns(
     if len(free) > len(both) and clock in values:
         rates = rates_among({i: values[i] for i in {*free, *places.values()} - {clock}}, values[clock])
         free = [i for i in free if i not in rates]
-    if len(free) >= len(both):
+    strained = [h for h in headers if is_strained(h.name) and not _states(h, "deflection")]
+    if len(free) >= len(both) > len(strained):
         # Of many columns the first ones: of trials side by side those of one trial.
         sized = sorted(
             free[: len(both)], key=lambda i: (not driven(values[i]), float(np.nanmax(np.abs(values[i]))))

@@ -309,6 +309,7 @@ _WHOLE_LETTERS = str.maketrans(
 )
 """Small letters that Unicode does not part into a letter and its mark."""
 
+_IDENTIFIER = re.compile(r"(?i:(?:^|[\W_])id)$|[a-z]I[dD]$")
 _SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7a3]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
 _COUNTED = re.compile(
@@ -365,8 +366,8 @@ def glued_ends(name: str) -> list[str]:
 
 
 def counts_rows(name: str) -> bool:
-    """Whether a name is one of a column that counts the rows or steps: `Sample`, `No.`, `Messpunkt`, `Steps`."""
-    return plain(name) in COUNTERS
+    """Whether a name is one of a column that counts rows, steps or tests: `Sample`, `No.`, `Messpunkt`, `TestID`."""
+    return plain(name) in COUNTERS or bool(_IDENTIFIER.search(name))
 
 
 def is_strained(name: str) -> bool:

@@ -137,6 +137,16 @@ def test_two_magnets_are_told_the_curve() -> None:
     assert best_writable(fits, [magnets]) in ("constant", "piecewise")
 
 
+def test_a_metal_that_yields_is_told_the_curve() -> None:
+    """F = 200 N + 20 N ln(x / 1 mm) is the limit of a power with a preload for an exponent that goes to 0."""
+    x = 0.001 + 0.01 * np.arange(300) / 300.0
+    bar = recording(x, 200.0 + 20.0 * np.log(1e3 * x), noise=0.01)
+    (power,) = [fit for fit in fit_laws([bar]) if fit.name == "power_preload"]
+    assert 0.0 < power.value("B") < 0.1
+    with pytest.raises(TirelabError, match="for a force that levels off, .* --part piecewise; for a part"):
+        tire_of(power, [bar], "")
+
+
 def test_a_damper_without_a_spring_has_its_preload_alone() -> None:
     time = np.arange(2000) / 100.0
     x = 0.01 * np.sin(2.0 * np.pi * time)

@@ -116,10 +116,12 @@ def test_what_a_drive_moves_evenly_is_the_deflection_however_large(tmp_path: Pat
         "Time (s),True Strain,True Stress (MPa)",
         "Zeit (s),Dehnung (%),Spannung (MPa)",
         "Time (s),Engineering strain,Engineering stress",
+        "TestID,Volume_Fraction,Strain,Stress,Density",
     ],
 )
 def test_strain_and_stress_are_neither_and_said_to_be(tmp_path: Path, header: str) -> None:
-    path = write_rows(tmp_path / "a.csv", header, *loading())
+    rows = (*loading(), *loading())[: header.count(",") + 1]
+    path = write_rows(tmp_path / "a.csv", header, *rows)
     with pytest.raises(
         RecordingError, match=r"says? strain or stress, which are neither deflection nor force"
     ) as caught:
@@ -274,6 +276,12 @@ def test_what_was_asked_for_is_no_reading(tmp_path: Path) -> None:
     assert proposed(path)[:2] == ["--columns", "deflection=#3,force=#4"]
     path = write_rows(tmp_path / "b.csv", "time [s],set_point,volume", time, np.sign(force - 9.0), force)
     assert proposed(path)[:2] == ["--columns", "deflection=NAME,force=NAME"]
+
+
+def test_the_number_of_a_test_is_no_reading(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(tmp_path / "a.csv", "TestID,Way,Cell,run_id", 7.0 + 0.0 * time, deflection, force, time)
+    assert proposed(path)[1] == "deflection=#2,force=#3"
 
 
 def test_what_counts_the_rows_is_no_force(tmp_path: Path) -> None:
