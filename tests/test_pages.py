@@ -86,6 +86,8 @@ NOT_RUN = {
     "tests/examples/test_real_recordings.py runs its parts where they are",
     "python tests/benchmarks/bench_held_out.py DIR": "it diagnoses the trials of a proof for six minutes; "
     "what it measures is tested in tests/tirelab/estimation/test_held_out.py",
+    "python tests/benchmarks/bench_identified.py DIR": "it diagnoses the trials of a proof for six minutes; "
+    "the five minutes diagnose beside a law of the same recordings too",
     "python tests/benchmarks/bench_scales.py DIR --trials 18": "it diagnoses the trials of a proof for half an hour; "
     "tests/tirelab/estimation/test_explanation.py::test_the_scale_of_a_recording_changes_nothing tries two rides",
 }

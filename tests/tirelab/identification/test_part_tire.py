@@ -143,7 +143,7 @@ def test_a_metal_that_yields_is_told_the_curve() -> None:
     bar = recording(x, 200.0 + 20.0 * np.log(1e3 * x), noise=0.01)
     (power,) = [fit for fit in fit_laws([bar]) if fit.name == "power_preload"]
     assert 0.0 < power.value("B") < 0.1
-    with pytest.raises(TirelabError, match="for a force that levels off, .* --part piecewise; for a part"):
+    with pytest.raises(TirelabError, match=r"for a force that levels off, .* --part piecewise; for a part"):
         tire_of(power, [bar], "")
 
 
