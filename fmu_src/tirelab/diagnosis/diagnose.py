@@ -51,7 +51,14 @@ from .discriminating_test import DiscriminatingTest, limits_of_rig, recommended
 from .errors_left import FittedData, Left, left_by
 from .localization import Span, law_corrected, localize
 from .missed import missed_held_out
-from .summary import before_simulation, not_seen, other_law, slow_noise, summarise
+from .summary import (
+    before_simulation,
+    law_of_first_loading,
+    not_seen,
+    other_law,
+    slow_noise,
+    summarise,
+)
 from .verdict import FitErrors, NotNamed, Verdict
 
 ExplainAnew = Callable[[Sequence[Recorded], Sequence[Recorded]], Explanation]
@@ -289,6 +296,8 @@ def _sentences(
     noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
     told += slow_noise(data.fitted, explanation.noise_free, noises)
     told += other_law(fit.after, left.models) if baseline.is_part and baseline.curve is None else []
+    if baseline.is_part and left.unexplained:
+        told += law_of_first_loading(data.fitted, data.residuals, explanation.residuals)
     return told
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
+from ..identification.first_loading import first_loading
 from ..names import REFITTED_LAW, UNKNOWN, plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
@@ -169,6 +170,29 @@ def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:
     return [
         f"A curve of the force over the deflection leaves {newtons(curve.after)} of it: beside the law of "
         "`tirelab identify --part piecewise` more may be told."
+    ]
+
+
+def law_of_first_loading(
+    fitted: Sequence[Recorded], before: Sequence[FloatArray], left: Sequence[FloatArray]
+) -> list[str]:
+    """Return the advice to believe the law of the first loading of a part, where most of what the believed law leaves
+    there more than in the later ones is left by the correction too.
+
+    before, left [N]: residuals of each recording. Beside a law amid the cycles of a part softening may not be found.
+    """
+    found = {}
+    for recording, *residuals in zip(fitted, before, left, strict=True):
+        all_of_it, rest = (first_loading(recording, own) for own in residuals)
+        if all_of_it is not None and rest is not None and rest.above > MAJORITY * all_of_it.above:
+            found[recording.name] = rest
+    if not found:
+        return []
+    name, first = max(found.items(), key=lambda pair: pair[1].above)
+    return [
+        f"Of the first loading in {name}, from {plain(first.begins, 4)} s to {plain(first.ends, 4)} s, "
+        f"{newtons(first.above)} more are left than of the later ones at the same deflection: the part softens or "
+        "takes a set, and the believed law is amid both. Identify the law of the first loading, and diagnose beside it."
     ]
 
 

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ..recordings.recording import Recording
+from ..preprocessing.samples import Recorded, is_timed
 from .branches import turning_points
 
 Array = NDArray[np.float64]
@@ -37,13 +37,15 @@ class FirstLoading:
     loop: float
 
 
-def first_loading(recording: Recording) -> FirstLoading | None:
+def first_loading(recording: Recorded, residual: Array | None = None) -> FirstLoading | None:
     """Return the first loading of a recording to its largest deflections if it lies further from the later loadings
     than those from their unloading; None where it does not, or where times or later cycles are missing.
+
+    residual (n,) [N]: what is looked at in place of the force: what a model leaves of it
     """
-    if not recording.timed:
+    if not is_timed([recording]):
         return None
-    x, force = recording.deflection, recording.force
+    x, force = recording.deflection, recording.force if residual is None else residual
     legs = list(pairwise(turning_points(x)))
     loading = [leg for leg in legs if x[leg[1]] > x[leg[0]]]
     if not loading:

@@ -7,7 +7,14 @@ import pytest
 from tirelab.diagnosis.alternatives import Alternative
 from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
-from tirelab.diagnosis.summary import QUICK, not_seen, other_law, slow_noise, summarise
+from tirelab.diagnosis.summary import (
+    QUICK,
+    law_of_first_loading,
+    not_seen,
+    other_law,
+    slow_noise,
+    summarise,
+)
 from tirelab.diagnosis.verdict import FitErrors, NotNamed
 from tirelab.estimation.findings import NamedEffect
 from tirelab.preprocessing.noise import Noise
@@ -51,6 +58,22 @@ def test_amplified_reading_noise_is_separated_from_the_error_of_the_tire():
 def test_a_held_out_error_that_grows_is_not_said_to_fall():
     told = summarise((FRICTION,), (), (), 0.85, FitErrors(6.0, 26.4, 6.1, 26.5, 31.0, "recordings given"))
     assert "On held-out data it does not fall: it goes from 26.5 N to 31.0 N." in told
+
+
+@pytest.mark.parametrize(("kept", "said"), [(0.8, True), (0.2, False)])
+def test_a_law_amid_a_first_loading_and_softened_cycles_is_told(kept: float, said: bool):
+    """One triangle to 2 mm, two to 20 mm; half of 20 N/mm is lost, and the law of 15 N/mm lies amid both."""
+    time = np.arange(0.0, 50.0, 0.02)
+    large = 0.02 * (1.0 - np.abs(1.0 - 2.0 * (time[:2000] / 20.0 % 1.0)))
+    x = np.concatenate([0.1 * large[:1000:2], large])
+    stiffness = np.where(x < np.maximum.accumulate(x), 1e4, 2e4)
+    foam = Recording("foam", time, x, np.full(x.size, np.inf), stiffness * x)
+    before = (stiffness - 1.5e4) * x
+    told = law_of_first_loading([foam], [before], [kept * before])
+    assert bool(told) == said
+    if said:
+        assert told[0].startswith("Of the first loading in foam, from 10 s to 20 s, 9")
+        assert "Identify the law of the first loading" in told[0]
 
 
 def test_where_no_effect_helps_the_error_stays_and_the_regression_is_stated():
