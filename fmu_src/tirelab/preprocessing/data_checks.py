@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from radialtire.tracking import PAUSE
+from scipy.ndimage import maximum_filter1d, median_filter
 from scipy.stats import binom, norm, t
 
 from ..errors import TirelabError
@@ -228,6 +229,7 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
             spikes(residual) & motion_of(r.time, r.deflection, timed=is_timed([r])).resolved
         )
         lone = lone[(lone > 0) & (lone < residual.size - 1)]
+        lone = lone[~_turning(r)[lone]]
         # A sample that stands out in the simulated force and not in what was read is no false reading.
         beyond, read = (v[lone] - 0.5 * (v[lone - 1] + v[lone + 1]) for v in (residual, r.force))
         lone = lone[read * np.sign(beyond) > MAJORITY * np.abs(beyond)]
@@ -240,6 +242,16 @@ def outliers_told(recordings: Sequence[Recorded], residuals: Sequence[FloatArray
                 "channel that hangs for a moment; look at them."
             )
     return tuple(sentences)
+
+
+def _turning(recording: Recorded) -> BoolArray:
+    """Return which samples (n,) stand beside a place where the motion begins, ends or turns, however many samples that
+    takes: the reading changes its slope there by STANDS_OUT times as much as in most of the SETTLING samples around.
+    """
+    slope = np.diff(recording.deflection) / np.diff(recording.time)
+    change = np.pad(np.abs(np.diff(slope)), 1, mode="edge")
+    turned = change > STANDS_OUT * median_filter(change, 2 * SETTLING + 1, mode="wrap")
+    return np.asarray(maximum_filter1d(turned, 3))
 
 
 def are_rare(lone: BoolArray) -> bool:
