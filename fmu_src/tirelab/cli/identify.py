@@ -231,7 +231,7 @@ def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path
         return ""
     path, first = max(firsts.items(), key=lambda pair: pair[1].above)
     file, piece = split_piece(path)
-    own = [f"{file}{piece.part}@{first.begins:.4g}s:{first.ends:.4g}s"]
+    own = [f"{file}{piece.part}@{first.begins:.6g}s:{first.ends:.6g}s"]
     return (
         f"the first loading of {path.name} lies {plain(first.above, 2)} N from the later ones at the same deflection "
         f"(the loop of these is {plain(first.loop, 2)} N wide): the part softens or takes a set, and this law is amid "
