@@ -331,6 +331,7 @@ def test_names_are_text_in_the_script_too(chromium: Any, kinds: dict[str, Any], 
     shown.context.close()
 
 
+@pytest.mark.slow
 def test_a_million_samples_open(chromium: Any, kinds: dict[str, Any], tmp_path: Path) -> None:
     """In a file under 2 MB; how soon is a matter of `tests/benchmarks/bench_report.py`."""
     made, path = kinds["one"], tmp_path / "long.html"
