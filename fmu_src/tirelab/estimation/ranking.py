@@ -29,7 +29,7 @@ FloatArray = NDArray[np.float64]
 TEMPERATURE = 2.0
 """Tempering of the log odds between sets, for fits that stop early and forms that are not quite right."""
 
-MOST_FITS = 40
+MOST_FITS = 80
 """Budget: number of fits of one diagnosis since the best set was last replaced by one that beats it (LOST)."""
 
 MOST_WORK = 1.2e8
