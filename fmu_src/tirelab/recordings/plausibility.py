@@ -209,7 +209,7 @@ def force_begins(deflection: FloatArray, force: FloatArray, radius: FloatArray) 
         return Zero(end, high - end, low, least) if free else None
     if abs(float(level[0])) < UNLOADED * largest and abs(begins - low) < AT_START * stroke:
         return Zero(low, stroke, low, least)
-    if begins < low and abs(least) <= uncertain:
+    if begins < low and abs(least) <= uncertain < NO_FORCE * largest:
         # No power of the deflection rises as this does, but from no force.
         return Zero(low, stroke, low, least)
     below = level[centre < begins]

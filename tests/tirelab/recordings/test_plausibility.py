@@ -10,6 +10,7 @@ from tirelab.recordings.choices import Choices
 from tirelab.recordings.inspection import inspect_recording, step_of
 from tirelab.recordings.plausibility import force_begins
 from tirelab.recordings.recording import Recording, RecordingError, read_recording
+from tirelab.recordings.zero import force_at_least
 
 X = 0.022 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
 T = np.arange(401) / 10.0
@@ -76,6 +77,21 @@ def test_a_part_that_snaps_through_begins_where_it_was_driven_without_force() ->
     assert found.far
     away = force_begins(x, force - 4.0, np.full(x.size, np.inf))
     assert away is None
+
+
+def test_a_force_that_a_resonance_hides_is_not_taken_for_none() -> None:
+    """A tire that is loaded all the time, from 10.8 mm on a gauge whose zero is 7.5 mm off; its frame rings at times."""
+    time = np.arange(0.0, 57.0, 0.005)
+    x = 0.01615 - 0.00535 * np.cos(2.0 * np.pi * 0.7 * time)
+    ringing = np.where(time % 20.0 < 4.0, 4000.0 * np.sin(2.0 * np.pi * 7.03 * time), 0.0)
+    noise = np.random.default_rng(1).normal(0.0, 50.0, time.size)
+    force = 550.9 * (100.0 * x - 0.75) ** 1.422 + ringing + noise
+    least, uncertain = force_at_least(x, force)
+    assert abs(least) < uncertain
+    found = force_begins(x, force, np.full(x.size, np.inf))
+    assert found is not None
+    assert found.begins == pytest.approx(7.5e-3, abs=5e-4)
+    assert not found.far
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.3])
