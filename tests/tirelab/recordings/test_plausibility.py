@@ -80,7 +80,7 @@ def test_a_part_that_snaps_through_begins_where_it_was_driven_without_force() ->
 
 
 def test_a_force_that_a_resonance_hides_is_not_taken_for_none() -> None:
-    """A tire that is loaded all the time, from 10.8 mm on a gauge whose zero is 7.5 mm off; its frame rings at times."""
+    """A tire that is loaded all the time, from 10.8 mm on, whose zero is 7.5 mm off; its frame rings at times."""
     time = np.arange(0.0, 57.0, 0.005)
     x = 0.01615 - 0.00535 * np.cos(2.0 * np.pi * 0.7 * time)
     ringing = np.where(time % 20.0 < 4.0, 4000.0 * np.sin(2.0 * np.pi * 7.03 * time), 0.0)
