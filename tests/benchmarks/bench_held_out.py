@@ -8,13 +8,13 @@ of the confidence.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
+from proofs import asked_for
 from radialtire import read_tire
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.names import UNKNOWN
@@ -54,16 +54,10 @@ def told(scores: Sequence[Score]) -> str:
 
 def main() -> None:
     """Diagnose all trials of a proof with their held-out recordings."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("proof", type=Path)
-    parser.add_argument("--jobs", type=int, default=2)
-    asked = parser.parse_args()
-    keys = sorted(path.stem for path in (asked.proof / "scores").glob("*.json"))
+    proof, jobs, keys = asked_for(__doc__ or "")
     scores: list[tuple[Score, Score]] = []
-    with get_context("spawn").Pool(asked.jobs) as pool:
-        for key, (before, after) in zip(keys, pool.imap(partial(given, asked.proof), keys), strict=True):
+    with get_context("spawn").Pool(jobs) as pool:
+        for key, (before, after) in zip(keys, pool.imap(partial(given, proof), keys), strict=True):
             scores.append((before, after))
             if before.verdict != after.verdict:
                 stated = ((s, "holds" if holds(s) else "does not") for s in (before, after))

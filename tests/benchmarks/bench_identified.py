@@ -8,12 +8,11 @@ trials whose verdict is another one, whether or not the law is refitted, and how
 
 from __future__ import annotations
 
-import argparse
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-from radialtire import read_tire
+from proofs import asked_for
 from tirelab import identify
 from tirelab.diagnosis.diagnose import diagnose
 from tirelab.names import REFITTED_LAW, UNKNOWN
@@ -38,24 +37,16 @@ def beside_own_law(root: Path, key: str) -> tuple[Score, Names, float] | None:
     if score.verdict is None or score.beyond_catalogue or not all(map(physics, score.right)):
         return None
     recordings = [read_recording(path) for path in folders.recordings(key, "train")]
-    named = identify(recordings, name=f"law of {key}")
-    found = diagnose(recordings, named.tire)
-    assert named.tire != read_tire(folders.tire(key))
+    found = diagnose(recordings, identify(recordings).tire)
     return score, frozenset(found.names), found.confidence
 
 
 def main() -> None:
     """Diagnose the trials of a proof beside the laws of their own recordings."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("proof", type=Path)
-    parser.add_argument("--jobs", type=int, default=2)
-    asked = parser.parse_args()
-    keys = sorted(path.stem for path in (asked.proof / "scores").glob("*.json"))
+    proof, jobs, keys = asked_for(__doc__ or "")
     believed, by_own, sure = [], [], []
-    with get_context("spawn").Pool(asked.jobs) as pool:
-        for result in pool.imap(partial(beside_own_law, asked.proof), keys):
+    with get_context("spawn").Pool(jobs) as pool:
+        for result in pool.imap(partial(beside_own_law, proof), keys):
             if result is None:
                 continue
             score, names, confidence = result
