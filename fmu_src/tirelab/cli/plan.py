@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -37,6 +38,7 @@ class RigOptions:
     time: str | None
     sampling: str | None
     noise: str | None
+    force: str | None
 
 
 def _share(context: click.Context, parameter: click.Parameter, text: str) -> float:
@@ -68,6 +70,7 @@ def _share(context: click.Context, parameter: click.Parameter, text: str) -> flo
     click.option("--time", metavar="TIME", help="Of driving, all recordings together.  [default: 5min]"),
     click.option("--sampling", metavar="RATE", help="Samples of force and deflection.  [default: 200Hz]"),
     click.option("--noise", metavar="FORCE", help="Standard deviation of one force sample.  [default: 5N]"),
+    click.option("--force", metavar="FORCE", help="Largest that press and load cell take: 2kN."),
 )
 @click.option(
     "--tire", type=FILE, help="The believed tire.  [default: that of the diagnosis, or the article's]"
@@ -143,8 +146,9 @@ def _lines(plan: RecordingPlan, out: Path) -> list[str]:
     told, possible, asked = plan.told
     rig = plan.rig
     lines = [
-        f"{plan.tire}: to {1e3 * rig.stroke:g} mm and {plan.peak:.0f} N, at up to {1e3 * rig.speed:g} mm/s, "
+        f"{plan.tire}: to {plain(1e3 * rig.stroke, 4)} mm and {plan.peak:.0f} N, at up to {1e3 * rig.speed:g} mm/s, "
         f"{1.0 / rig.sampling:g} Hz, {rig.noise:g} N of noise",
+        *([] if math.isinf(rig.force) else [f"the force stays within {plain(rig.force, 4)} N"]),
         f"{len(plan.drives)} recording{'s' if len(plan.drives) > 1 else ''}, {in_seconds(plan.seconds)} s of "
         f"{rig.time:g} s:",
         *(

@@ -11,14 +11,16 @@ count as decisive whose difference a slightly wrong form causes as well.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
 from ..estimation.explanation import Explanation
 from ..estimation.findings import FittedModel
 from ..names import plain
+from ..planning.force_limit import limits_within_force
 from ..planning.waveforms import WAVEFORMS, Limits, motion, sample_times
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.samples import RawDataset
@@ -133,31 +135,36 @@ def discriminate(
     that has all effects of the accepted model and more is followed by that model.
     """
     best: DiscriminatingTest | None = None
-    radii = alternative.radii
     between = (accepted.names, alternative.names)
     contains = set(accepted.names) < set(alternative.names)
     true, refitted = (alternative, accepted) if contains else (accepted, alternative)
+    for test in _tests(alternative.radii, limits):
+        difference = simulate(true.tire, test) - simulate(refitted.tire, test)
+        sensitivities = refitted.sensitivities(test)
+        if sensitivities.shape[1]:
+            difference = (
+                difference - sensitivities @ np.linalg.lstsq(sensitivities, difference, rcond=1e-8)[0]
+            )
+        samples = test.deflection.size
+        typical = float(np.sqrt(np.mean(difference**2))) / noise
+        missed = true.missed(test) / noise
+        gain = expected_gain(samples, typical, missed)
+        if best is None or gain > best.gain:
+            separation = typical * float(np.sqrt(samples))
+            ground = not accepted.baseline.is_part
+            best = DiscriminatingTest(test, between, gain, separation, typical, missed, ground)
+    assert best is not None
+    return best
+
+
+def _tests(radii: Sequence[float], limits: Limits) -> Iterator[Test]:
+    """Yield the motions within limits, on the first and the last surface that was recorded and can be mounted."""
     known = [r for r in radii if r in (limits.surfaces or radii)] or list(limits.surfaces)
     surfaces = known if len(known) == 1 else [known[0], known[-1]]
     for name, waveform in WAVEFORMS.items():
         for radius in surfaces:
             path = motion(waveform, limits)
-            test = Test(name, sample_times(limits), path, np.full(path.size, radius))
-            difference = simulate(true.tire, test) - simulate(refitted.tire, test)
-            sensitivities = refitted.sensitivities(test)
-            if sensitivities.shape[1]:
-                difference = (
-                    difference - sensitivities @ np.linalg.lstsq(sensitivities, difference, rcond=1e-8)[0]
-                )
-            typical = float(np.sqrt(np.mean(difference**2))) / noise
-            missed = true.missed(test) / noise
-            gain = expected_gain(path.size, typical, missed)
-            if best is None or gain > best.gain:
-                separation = typical * float(np.sqrt(path.size))
-                ground = not accepted.baseline.is_part
-                best = DiscriminatingTest(test, between, gain, separation, typical, missed, ground)
-    assert best is not None
-    return best
+            yield Test(name, sample_times(limits), path, np.full(path.size, radius))
 
 
 def expected_gain(samples: int, different: float, missed: float) -> float:
@@ -171,6 +178,15 @@ def expected_gain(samples: int, different: float, missed: float) -> float:
     law = beside_noise(blocks).above(missed * math.sqrt(averaged))
     left = blocks + samples * missed**2
     return law.profile(left)[0] - law.profile(left + samples * different**2)[0]
+
+
+def _peak(models: Sequence[FittedModel], limits: Limits) -> float:
+    """Return the largest force [N] of either sign of all models over all tests within limits."""
+    return max(
+        float(np.abs(simulate(model.tire, test)).max())
+        for test in _tests(models[0].radii, limits)
+        for model in models
+    )
 
 
 def _surface(radius: float) -> str:
@@ -188,7 +204,10 @@ def recommended(
         model = explanation.alternative_model(alternative.names)
         if model is None:
             continue
-        test = discriminate(explanation.model, model, noise, limits)
+        within = limits_within_force(limits, partial(_peak, (explanation.model, model)))
+        if within is None:
+            continue
+        test = discriminate(explanation.model, model, noise, within)
         if nearest is None or test.gain > nearest.gain:
             nearest = test
         if test.sufficient:

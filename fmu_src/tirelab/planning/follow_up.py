@@ -23,7 +23,7 @@ from ..names import UNKNOWN
 from ..regressors.signature import LAW
 from .menu import FEWEST, Drive
 from .plan import Progress, RecordingPlan, motions_within, offered, planned
-from .responses import responses_of
+from .responses import responses_of, within_force
 from .rig import Rig
 from .separation import Question
 
@@ -121,6 +121,7 @@ def follow_up(
     """
     if not diagnosed.alternatives:
         raise TirelabError("the diagnosis has no alternatives: nothing is left to tell apart")
+    rig = within_force(rig, tire)
     possible = motions_within(rig)
     responses = responses_of((*possible, *diagnosed.recorded), tire, rig, progress)
     questions = alternatives_asked(diagnosed, responses.names, size)

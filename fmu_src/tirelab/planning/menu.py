@@ -83,23 +83,23 @@ def drive_of(waveform: str, part: float, radius: float, rig: Rig, pressure: floa
     return Drive(waveform, sample_times(limits), path, np.full(path.size, radius), pressure)
 
 
-def menu(rig: Rig) -> tuple[Drive, ...]:
+def menu(rig: Rig, lengths: Sequence[float] = LENGTHS) -> tuple[Drive, ...]:
     """Return all motions that keep within the limits of the rig: at its first pressure, and slow triangles on the first
-    surface at each other one.
+    surface at each other one. lengths: as parts of the rig's time
     """
     pressure = rig.pressures[0] if rig.pressures else None
     found = []
     for radius in rig.surfaces:
         for waveform in MENU:
-            for part in LENGTHS:
+            for part in lengths:
                 if part * rig.time / rig.sampling < FEWEST:
                     continue
                 drive = drive_of(waveform, part, radius, rig, pressure)
                 if drive.fastest <= ALLOWED * rig.speed:
                     found.append(drive)
-    lengths = {len(d.time) for d in found}
-    others = [drive_of(SLOW, part, rig.surfaces[0], rig, p) for p in rig.pressures[1:] for part in LENGTHS]
-    return (*found, *(d for d in others if len(d.time) in lengths and d.fastest <= ALLOWED * rig.speed))
+    sizes = {len(d.time) for d in found}
+    others = [drive_of(SLOW, part, rig.surfaces[0], rig, p) for p in rig.pressures[1:] for part in lengths]
+    return (*found, *(d for d in others if len(d.time) in sizes and d.fastest <= ALLOWED * rig.speed))
 
 
 def experiment_of(drive: Drive, tire: TireModel, noise: float) -> Experiment:

@@ -14,7 +14,7 @@ from ..errors import TirelabError
 from ..regressors.signature import LAW
 from .choice import TOLD, Choice, Menu, chosen_of
 from .menu import LENGTHS, SLOW, Drive, drive_of, menu
-from .responses import Responses, responses_of
+from .responses import Responses, responses_of, within_force
 from .rig import Rig
 from .separation import Question, probabilities, questions_beside, questions_of
 
@@ -95,6 +95,7 @@ class RecordingPlan:
                 "time": self.rig.time,
                 "sampling": self.rig.sampling,
                 "noise": self.rig.noise,
+                "force": None if np.isinf(self.rig.force) else self.rig.force,
             },
             "size": self.size,
             "peak_force": self.peak,
@@ -166,8 +167,10 @@ def plan_recordings(
     """Return the shortest set of recordings that tells the catalogue's effects apart on a believed tire.
 
     size: of the effects, largest response over the peak force; progress: called with a sentence for each stage
+    The stroke of the rig ends where the tire reaches the rig's largest force (`within_force`).
     Raises TirelabError where no motion fits into the rig's limits.
     """
+    rig = within_force(rig, tire)
     responses = responses_of(motions_within(rig), tire, rig, progress)
     questions = (*questions_of(responses.names, size), *questions_beside(responses.names, size))
     return planned(tire, rig, responses, offered(responses, questions, len(responses.drives)), progress)

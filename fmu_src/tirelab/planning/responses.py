@@ -19,13 +19,16 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
+from ..errors import TirelabError
+from ..names import plain
 from ..regressors.dataset import Dataset, Scales, arranged
 from ..regressors.draws import drawn, strengthened
 from ..regressors.excitation import excitation_of
 from ..regressors.experiment import Experiment
 from ..regressors.signature import FACTOR, LAW, SILENT, candidates, law_signature, size_of
 from ..simulation.simulate import simulate
-from .menu import Drive, experiment_of, peak_force
+from .force_limit import depth_within
+from .menu import LENGTHS, Drive, experiment_of, menu, peak_force
 from .rig import Rig
 
 FloatArray = NDArray[np.float64]
@@ -118,6 +121,25 @@ def responses_of(
     parts = (replace(dataset, experiments=(e,)) for e in experiments)
     mixed = tuple(not excitation_of(part).one_speed for part in parts)
     return Responses(tuple(drives), tuple(grams), places, silent, peak, mixed)
+
+
+def within_force(rig: Rig, tire: TireModel) -> Rig:
+    """Return a rig whose stroke ends where a believed tire reaches the largest force of the rig, whatever is driven.
+
+    Raises TirelabError where the tire is beyond that force before it is pressed.
+    """
+    held, _ = _at_pressures(tire, rig)
+
+    def peak(stroke: float) -> float:
+        drives = menu(replace(rig, stroke=stroke), LENGTHS[:1])
+        return max((float(np.abs(simulate(held, d)).max()) for d in drives), default=0.0)
+
+    stroke = depth_within(rig.force, rig.stroke, peak)
+    if not stroke:
+        raise TirelabError(
+            f"the force of {tire.name} is beyond {plain(rig.force, 4)} N before it is pressed; give a larger --force"
+        )
+    return replace(rig, stroke=stroke)
 
 
 def slow_noise(experiment: Experiment) -> float:

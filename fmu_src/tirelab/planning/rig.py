@@ -7,6 +7,7 @@ pressures = "2 bar, 3 bar"
 time = "5 min"            of driving, all recordings together
 sampling = "200 Hz"
 noise = "5 N"             standard deviation of one sample of the force
+force = "2 kN"            largest that the press and its load cell take
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ class Rig:
     stroke [m]: largest deflection; speed [m/s]: fastest motion; surfaces [m]: radii that can be mounted, flat infinite;
     pressures [Pa]: gauge pressures that can be held, none: as it is; time [s]: of driving, all recordings together;
     sampling [s]: between samples; noise [N]: standard deviation of one sample of the force
+    force [N]: largest that the press and its load cell take
     start [m]: deflection from which a motion goes; of a part what was recorded says it, and no file of a rig
     """
 
@@ -50,12 +52,13 @@ class Rig:
     time: float = 300.0
     sampling: float = 0.005
     noise: float = 5.0
+    force: float = math.inf
     start: float = 0.0
 
     def limits(self, duration: float) -> Limits:
         """Return the limits of one motion of this duration [s]."""
         held = self.surfaces, self.pressures
-        return Limits(self.stroke, self.speed, self.sampling, duration, *held, self.start)
+        return Limits(self.stroke, self.speed, self.sampling, duration, *held, self.start, self.force)
 
     @property
     def test_limits(self) -> Limits:
@@ -73,6 +76,7 @@ _EXAMPLES = {
     "time": "5min",
     "sampling": "200Hz",
     "noise": "5N",
+    "force": "2kN",
 }
 
 
@@ -169,4 +173,5 @@ _READERS: dict[str, Callable[[str, Any], Any]] = {
     "time": _quantity("s"),
     "sampling": _interval,
     "noise": _quantity("N"),
+    "force": _quantity("N"),
 }

@@ -20,6 +20,7 @@ class Limits:
     start [m]: deflection from which a motion goes, 0: of a tire that just touches
     surfaces [m]: radii that can be mounted; none: those that were recorded
     pressures [Pa]: gauge pressures that can be held; none: not known
+    force [N]: largest that the press and its load cell take
     """
 
     deepest: float = 0.025
@@ -29,12 +30,15 @@ class Limits:
     surfaces: tuple[float, ...] = ()
     pressures: tuple[float, ...] = ()
     start: float = 0.0
+    force: float = math.inf
 
     def __post_init__(self) -> None:
         for name, unit in (("deepest", "m"), ("fastest", "m/s"), ("step", "s"), ("longest", "s")):
             value = getattr(self, name)
             if not (isinstance(value, Real) and 0.0 < float(value) < math.inf):
                 raise ValueError(f"{name}={value!r} is no limit of a rig; give a number [{unit}] above 0")
+        if not (isinstance(self.force, Real) and float(self.force) > 0.0):
+            raise ValueError(f"force={self.force!r} is no limit of a rig; give a number [N] above 0")
         if not (isinstance(self.start, Real) and math.isfinite(self.start)):
             raise ValueError(f"start={self.start!r} is no deflection; give a number [m]")
 

@@ -3,11 +3,15 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 import tirelab.planning.responses as responses
 from click.testing import CliRunner, Result
+from radialtire import TireModel
 from tirelab.cli import main
+from tirelab.planning.menu import Drive
+from tirelab.simulation.simulate import simulate
 
 
 @pytest.fixture(autouse=True)
@@ -42,6 +46,19 @@ def test_a_plan_is_written_and_told(tmp_path: Path) -> None:
         assert recording["file"] in done.output
     assert (tmp_path / "plan" / "plan.png").is_file()
     assert "friction loop" in done.output
+
+
+def test_no_drive_presses_the_tire_beyond_the_largest_force(tmp_path: Path) -> None:
+    done = run(*SMALL, "--force", "500 N", "--out", tmp_path / "plan", "--quiet")
+    assert done.exit_code == 0, done.output
+    assert "the force stays within 500 N" in done.output
+    content = json.loads((tmp_path / "plan" / "plan.json").read_text())
+    assert content["rig"]["force"] == 500.0
+    for recording in content["recordings"]:
+        table = pl.read_csv(tmp_path / "plan" / recording["file"])
+        time, depth = table["time [s]"].to_numpy(), 1e-3 * table["deflection [mm]"].to_numpy()
+        pressed = Drive("", time, depth, np.full(time.size, np.inf))
+        assert 0.95 * 500.0 < simulate(TireModel(), pressed).max() <= 500.0
 
 
 def test_json_is_what_the_file_holds(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """The test that tells alternatives apart."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,10 +10,17 @@ from fits import model_of
 from radialtire import PowerLaw, TireModel
 from scipy.stats import norm
 from tirelab.diagnosis.alternatives import USUAL_SPEED
-from tirelab.diagnosis.discriminating_test import DECISIVE, discriminate, expected_gain, limits_of_rig
+from tirelab.diagnosis.discriminating_test import (
+    DECISIVE,
+    discriminate,
+    expected_gain,
+    limits_of_rig,
+    recommended,
+)
 from tirelab.planning.waveforms import Limits
 from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.selection.search import EFFECTIVE
+from tirelab.simulation.simulate import simulate
 
 SLIPPING = {"rate_independent_hysteresis": {"slip_force": 30.0, "reach": 1e-3}}
 
@@ -164,3 +172,16 @@ def test_a_rig_that_drove_a_motion_can_drive_it_twice_as_fast() -> None:
     samples = raw_dataset_of(recordings, TireModel())
     assert limits_of_rig(samples, None, timed=True, part=False).fastest == pytest.approx(1.0, rel=0.02)
     assert limits_of_rig(samples, None, timed=False, part=False).fastest == USUAL_SPEED
+
+
+def test_the_recommended_test_presses_no_model_beyond_the_largest_force_of_the_rig():
+    one, other = viscous(), friction()
+    explanation = SimpleNamespace(model=one, alternative_model=lambda names: other)
+    asked = [SimpleNamespace(names=other.names)]
+    limits = Limits(deepest=0.02, fastest=0.1)
+    free = recommended(explanation, asked, 6.0, limits)
+    within = recommended(explanation, asked, 6.0, replace(limits, force=500.0))
+    peaks = [max(simulate(m.tire, found.test).max() for m in (one, other)) for found in (free, within)]
+    assert peaks[0] > 1000.0
+    assert peaks[1] <= 500.0
+    assert recommended(explanation, asked, 6.0, replace(limits, force=1e-6)) is None

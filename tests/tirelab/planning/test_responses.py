@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from radialtire import CATALOGUE, TireModel
 from small_rig import RIG, few_effects, silent
+from tirelab.errors import TirelabError
 from tirelab.planning.menu import drive_of, experiment_of
 from tirelab.planning.responses import (
     DRAWS,
@@ -16,6 +17,7 @@ from tirelab.planning.responses import (
     SLOW_NOISE,
     Responses,
     responses_of,
+    within_force,
 )
 from tirelab.planning.separation import Question, probabilities
 from tirelab.regressors.signature import LAW
@@ -92,6 +94,30 @@ def test_an_effect_without_response_is_said_to_have_none(monkeypatch: pytest.Mon
     found = responses_of([still], TireModel(), RIG, silent)
     assert found.silent == ("inertia",)
     assert set(found.silent) < set(CATALOGUE)
+
+
+@pytest.mark.parametrize("force", [200.0, 800.0])
+def test_the_stroke_ends_where_the_tire_reaches_the_largest_force(force: float) -> None:
+    """F = A x^B with x in cm, so x = (F / A)^(1 / B) on the stiffer of two surfaces, to a thousandth of the stroke."""
+    tire = TireModel()
+    found = within_force(replace(RIG, surfaces=(math.inf, 0.254), force=force), tire)
+    laws = [tire.law.coefficients(radius) for radius in (math.inf, 0.254)]
+    least = min(1e-2 * (force / a) ** (1.0 / b) for a, b in laws)
+    assert found.stroke == pytest.approx(least, abs=1e-3 * RIG.stroke)
+    assert replace(found, stroke=RIG.stroke, surfaces=RIG.surfaces, force=math.inf) == RIG
+
+
+def test_a_held_pressure_counts_in_the_largest_force() -> None:
+    held = replace(RIG, pressures=(2e5, 4e5), force=500.0)
+    assert (
+        within_force(held, TireModel()).stroke < within_force(replace(held, pressures=()), TireModel()).stroke
+    )
+
+
+def test_a_force_that_the_tire_exceeds_before_it_is_pressed_is_refused() -> None:
+    tire = TireModel(effects=((CATALOGUE["force_offset"], (60.0,)),))
+    with pytest.raises(TirelabError, match="is beyond 50 N before it is pressed; give a larger --force"):
+        within_force(replace(RIG, force=50.0), tire)
 
 
 def test_triangles_pass_each_deflection_at_one_speed(found: Responses) -> None:

@@ -15,6 +15,7 @@ pressures = "2 bar, 3 bar"
 time = "4 min"
 sampling = "100 Hz"
 noise = "1.5 lbf"
+force = "0.8 kN"
 """
 
 
@@ -25,6 +26,7 @@ def test_a_file_says_it_all(tmp_path: Path) -> None:
     assert rig.surfaces == (math.inf, 0.254)
     assert rig.pressures == pytest.approx((2e5, 3e5))
     assert rig.noise == pytest.approx(1.5 * 4.4482216152605)
+    assert rig.force == rig.test_limits.force == pytest.approx(800.0)
 
 
 def test_options_go_over_the_file(tmp_path: Path) -> None:
@@ -43,6 +45,7 @@ def test_without_either_the_defaults_hold() -> None:
         ({"stroke": "20"}, "--stroke: '20' is not a number with a unit; write for instance 20mm"),
         ({"speed": "20mm"}, "--speed: '20mm': 'mm' is not a unit of speed"),
         ({"noise": "-3N"}, "--noise: '-3N' is not positive"),
+        ({"force": "80kg"}, "--force: '80kg': 'kg' is not a unit of force"),
         ({"surfaces": "flat,25.4"}, "--surfaces: radius '25.4' has no unit"),
         ({"surfaces": ""}, "--surfaces: radius '' cannot be read"),
         ({"sampling": "fast"}, "--sampling: sampling 'fast' cannot be read"),
