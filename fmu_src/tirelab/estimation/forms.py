@@ -24,7 +24,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from ..preprocessing.motion import branches
+from ..preprocessing.turns import branches
 from ..regressors.dataset import Dataset
 from ..regressors.signature import HEIGHTS, LAW, form_error, size_of
 
@@ -75,7 +75,8 @@ def form_errors(
 
 
 def drifts(dataset: Dataset) -> FloatArray:
-    """Return a drift of the force (m, k) in each recording, as large as the misfit together: hats over the time.
+    """Return a drift of the force (m, k) in each recording, as large as the misfit together: hats over the time,
+    evenly over its strokes.
 
     There are as many as strokes, since within one of them, or in a hold, no time can be told from what the deflection
     does, and at most as many as a refitted law has over the deflection. In one cycle there are none: no deflection is
@@ -85,10 +86,12 @@ def drifts(dataset: Dataset) -> FloatArray:
     span = float(np.ptp(dataset.deflection))
     for own in many:
         direction, _ = branches(own.deflection, own.gauge, span)
-        strokes = 1 + int(np.count_nonzero(np.diff(direction)))
+        turns = own.time[1:][np.diff(direction) != 0]
+        strokes = 1 + turns.size
         if strokes > 2:
             count = min(strokes, HEIGHTS)
-            hats = _hats((own.time - own.time[0]) / max(own.time[-1] - own.time[0], 1e-300), count)
+            ends = np.concatenate([own.time[:1], turns, own.time[-1:]])
+            hats = _hats(np.interp(own.time, ends, np.linspace(0.0, 1.0, ends.size)), count)
             columns.append(
                 dataset.stacked([hats if e is own else np.zeros((e.time.size, count)) for e in many])
             )

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import TireModel
 
-from ..preprocessing.motion import branches as cycles
+from ..preprocessing.turns import branches as cycles
 from ..recordings.recording import Recording
 from .branches import LOADING, UNLOADING, branches
 from .surfaces import CM_PER_M

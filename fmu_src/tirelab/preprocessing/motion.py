@@ -34,6 +34,7 @@ from scipy.ndimage import gaussian_filter1d
 from .gauge import deflection_noise
 from .noise import NEGLIGIBLE, STANDS_OUT
 from .spread import TRIMMED
+from .turns import branches
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -153,30 +154,6 @@ def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
     if len(cuts) > MOST_PIECES:
         cuts = [0]
     return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))
-
-
-def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[FloatArray, FloatArray]:
-    """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
-
-    A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of its span, or
-    of another `span` [m] that is longer; it counts from its turning point on. What first goes down has not gone up.
-    """
-    threshold = max(6.0 * noise, 0.02 * max(float(np.ptp(deflection)), span))
-    values = deflection.tolist()
-    turns, sign, best, extreme = [0], 1.0, 0, values[0]
-    for i, x in enumerate(values):
-        ahead = sign * (x - extreme)
-        if ahead >= 0.0:
-            best, extreme = i, x
-        elif -ahead > threshold:
-            turns.append(best + 1)
-            sign, best, extreme = -sign, i, x
-    first = int(len(turns) > 1 and values[turns[1] - 1] - values[0] <= threshold)
-    lengths = np.diff([0, *turns[1 + first :], deflection.size])
-    number = first + np.arange(lengths.size)
-    direction = np.repeat(np.where(number % 2 == 0, 1.0, -1.0), lengths)
-    cycle = np.repeat(np.floor(number / 2.0), lengths)
-    return direction, cycle
 
 
 CUTOFFS = np.pi * np.geomspace(0.02, 2.0, 14)

@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE, CHANNELS, Effect, TireModel
 
-from ..preprocessing.motion import branches
 from ..preprocessing.noise import NEGLIGIBLE, STILL
+from ..preprocessing.turns import branches
 from ..simulation.simulate import History, elastic_stage, respond_series
 from .dataset import Dataset, Experiment
 from .draws import drawn

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from tirelab.preprocessing.motion import (
     LONG,
-    branches,
     followed_turns,
     motion_of,
     smoothed,
@@ -40,20 +39,6 @@ def test_branches_and_cycles_of_triangles() -> None:
     middle = np.arange(SIDE // 2, time.size, SIDE)  # of each branch
     np.testing.assert_array_equal(motion.direction[middle], [1, -1, 1, -1, 1, -1])
     np.testing.assert_array_equal(motion.cycle[middle], [0, 0, 1, 1, 2, 2])
-
-
-def test_a_recording_that_begins_deep_begins_with_unloading() -> None:
-    """No loading came before it, not even of a sample: it would be a second visit of where the recording ends."""
-    _, deflection = triangles(2)
-    pressed = deflection[SIDE:]
-    direction, cycle = branches(pressed, 0.0)
-    middle = np.arange(SIDE // 2, pressed.size, SIDE)
-    np.testing.assert_array_equal(direction[middle], [-1, 1, -1])
-    np.testing.assert_array_equal(cycle[middle], [0, 1, 1])
-    assert direction[0] == -1.0
-    # Neither the noise of the gauge is a loading.
-    trembling, _ = branches(noisy(pressed, 2e-5), 2e-5)
-    assert np.all(trembling[: SIDE // 2] == -1.0)
 
 
 def test_the_largest_deflection_so_far() -> None:
