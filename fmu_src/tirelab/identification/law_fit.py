@@ -29,6 +29,8 @@ Fitted = tuple[Array, Array]
 SAMPLES_MOST = 20_000
 """Most samples that are fitted, evenly spaced."""
 
+ROUNDING = float(np.finfo(float).eps)
+
 UNSEEN = 1e-9
 """Part of what a law leaves by which a constant moves its force at most where the recordings do not determine it."""
 
@@ -107,12 +109,14 @@ def fit_of(name: str, symbols: Symbols, values: Array, fitted: Fitted, load: flo
     residual, derivatives = fitted
     n, k = residual.size, values.size
     squares = float(residual @ residual)
-    variance = squares / max(n - k, 1)
     # In units of their own: a coefficient of 1e5 beside an exponent would be cut off as if it were not seen at all.
     sizes = np.maximum(np.linalg.norm(derivatives, axis=0), 1e-300)
-    seen = derivatives / sizes
-    covariance = variance * np.linalg.pinv(seen.T @ seen)
-    spread = np.sqrt(np.maximum(np.diag(covariance), 0.0)) / sizes
+    _, seen, ways = np.linalg.svd(derivatives / sizes, full_matrices=False)
+    told = seen > n * ROUNDING * seen.max(initial=0.0)
+    scale = np.sqrt(squares / max(n - k, 1))
+    spread = scale * np.linalg.norm(ways[told] / seen[told, None], axis=0) / sizes
+    # A direction in which the force does not change leaves the constants that lie in it anywhere.
+    spread[np.any(np.abs(ways[~told]) > np.sqrt(ROUNDING), axis=0)] = np.inf
     spread[sizes * np.maximum(np.abs(values), 1.0) <= UNSEEN * np.sqrt(squares)] = np.inf
     constants = tuple(
         (symbol, float(value * factor), float(abs(factor) * deviation), unit)

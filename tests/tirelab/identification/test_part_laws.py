@@ -150,6 +150,16 @@ def test_constants_that_nothing_determines_have_no_uncertainty() -> None:
     assert all(np.isfinite(std) for _, _, std, _ in falling["polynomial"].constants)
 
 
+def test_two_constants_that_take_each_others_place_are_known_no_better_than_their_exponent() -> None:
+    """A logarithm is F0 + A x^B for B near 0, where A B and F0 + A are known alone: A is known as well as B is."""
+    x = np.geomspace(1e-3, 0.03, 2000)
+    fits = {fit.name: fit for fit in fit_laws([recording(x, 40.0 + 5.0 * np.log(x), 0.5)])}
+    (_, a, of_a, _), (_, b, of_b, _), (_, _, of_preload, _) = fits["power_preload"].constants
+    assert abs(b) < 0.1
+    assert of_a / abs(a) == pytest.approx(of_b / abs(b), rel=0.1)
+    assert of_preload == pytest.approx(of_a, rel=0.1)
+
+
 def test_one_surface_at_a_time() -> None:
     flat = recording(X, 90e3 * X)
     bump = Recording("bump", flat.time, X, np.full(X.size, 0.25), flat.force)
