@@ -12,6 +12,7 @@ from radialtire.part_curve import PartCurve
 from ..errors import TirelabError
 from ..names import plain
 from ..recordings.counting import MOST_MOVED
+from ..recordings.pulling import pull_of
 from ..recordings.recording import Recording
 from ..recordings.sign_convention import mass_alike
 from ..recordings.zero import FARTHEST
@@ -29,7 +30,9 @@ IN_GAP = 0.1
 """Share of the largest force that recordings may have inside the gap, where its law has none: friction and the zero."""
 
 TWO_SIDED = ("constant", "linear", "power", "power_preload")
-"""Laws that a tire file holds as a power law of a part that is held at both ends, with its preload."""
+"""Laws that a tire file holds as a power law of a part that is held at both ends, with its preload; the power alone
+only where the recordings show it pull, else it is one that is pressed, and may lift off.
+"""
 
 CURVE = "piecewise"
 """Law that a tire file holds as a curve of a part that is held at both ends. Every recording has one; it is proposed
@@ -57,6 +60,10 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
 
     Raises TirelabError where a tire file cannot hold the law, and where there is a force inside a law's gap.
     """
+    if fit.name == "power" and not _pulled(recordings):
+        law = _power_law(fit, max(fit.value("A"), LEAST_SPRING), recordings)
+        if law.coefficient > LEAST_SPRING:
+            return _described(TireModel(law=law), recordings, name)
     if fit.name in TWO_SIDED:
         return _described(_two_sided(fit, recordings), recordings, name)
     if fit.name == CURVE and len(fit.at) > 1:
@@ -117,6 +124,12 @@ def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
         f"the force rises and falls with the deflection in and out alike, by {plain(common, 2)} N, and the spring "
         f"of this law by {plain(spring, 2)} N, as with detents or a snap-through"
     )
+
+
+def _pulled(recordings: Sequence[Recording]) -> bool:
+    """Return whether a recording shows the force of a part that pulls, or deflections of one."""
+    stroke = stroke_of(recordings)
+    return any(pull_of(r.force) < 0.0 or float(r.deflection.min()) < -AT_REST * stroke for r in recordings)
 
 
 def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:

@@ -35,6 +35,24 @@ def test_a_tire_of_it_runs(name: str, tmp_path: Path) -> None:
     np.testing.assert_allclose(simulated, force, atol=1.5)
 
 
+def test_a_power_is_held_at_both_ends_only_where_the_recordings_show_it() -> None:
+    """A part that was only pressed may lift off: below the length to which it has set it has no force."""
+    depth = np.linspace(0.0, 0.01, 500)
+    way = np.linspace(-0.01, 0.01, 500)
+    pressed, pulled = (
+        recording(depth, 4e4 * depth**1.3),
+        recording(way, 4e4 * np.sign(way) * np.abs(way) ** 1.3),
+    )
+    held = {
+        name: tire_of(next(fit for fit in fit_laws([r]) if fit.name == "power"), [r], "")
+        for name, r in (("pressed", pressed), ("pulled", pulled))
+    }
+    assert not held["pressed"].two_sided
+    assert held["pressed"].is_part
+    assert held["pulled"].two_sided
+    np.testing.assert_allclose(simulate(held["pressed"], pressed), pressed.force, atol=1.0)
+
+
 def test_what_a_tire_file_cannot_hold_is_refused() -> None:
     far = recording(X + 0.02, 90e3 * X)
     fits = {fit.name: fit for fit in fit_laws([far])}
