@@ -119,15 +119,22 @@ def beyond_fitted(fitted: Sequence[Recording], kept: Sequence[Recording]) -> lis
 
 
 def pulls_told(recordings: Sequence[Recording], tire: TireModel) -> list[str]:
-    """Return a sentence for each recording in which a tire pulls, which no effect lets it do; a part may."""
+    """Return a sentence for each recording in which a tire pulls, or a part whose law begins where it is pressed, which
+    no effect lets them do; a part that is held at both ends may.
+    """
     told = []
+    pressed = "a part that is only pressed" if tire.is_part else "a tire"
+    held = (
+        "if it is held at both ends, identify it with a law that pulls, as --part power_preload or --part linear"
+        if tire.is_part
+        else "if this is a part that is held at both ends, identify it with --part"
+    )
     for r in () if tire.two_sided else recordings:
         if least := pull_of(r.force):
             zero = quantity_text("force", float(f"{least:.3g}"))
             told.append(
-                f"the force of {r.name} goes down to {plain(least, 3)} N, and a tire does not pull: if the load "
-                f"cell was not zeroed, give what it reads without load, as in --zero force={zero}; if this is a "
-                "part that is held at both ends, identify it with --part"
+                f"the force of {r.name} goes down to {plain(least, 3)} N, and {pressed} does not pull: if the load "
+                f"cell was not zeroed, give what it reads without load, as in --zero force={zero}; {held}"
             )
     return told
 

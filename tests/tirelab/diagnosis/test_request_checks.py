@@ -135,4 +135,7 @@ def test_a_tire_that_pulls_is_told_and_a_part_is_not() -> None:
     (told,) = pulls_told(presses, TireModel())
     assert told.startswith("the force of -60 goes down to -")
     assert "--zero force=-" in told
+    assert told.endswith("if this is a part that is held at both ends, identify it with --part")
+    (of_part,) = pulls_told(presses, TireModel(PowerLaw(1000.0, 1.0), inflated=False))
+    assert of_part.endswith("identify it with a law that pulls, as --part power_preload or --part linear")
     assert pulls_told(presses, TireModel(two_sided=True)) == []
