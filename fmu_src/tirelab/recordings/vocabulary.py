@@ -63,6 +63,7 @@ FOREIGN: dict[str, tuple[str, ...]] = {
         *("linear pot", "linear potentiometer", "potentiometer"),
         *(
             "penetration",
+            "indentation",
             "penetration depth",
             "pd",
             "indentation depth",

@@ -274,7 +274,10 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
             pairs = [p for p in pairs if p.get("same") and (p["probability"] or 0.0) >= least]
         alternatives = [pair["names"] for pair in words.likeliest(pairs)]
     if sure := _sure(verdict):
-        yield from _beside(sure, [own, *(names for names in alternatives if set(sure) <= set(names))])
+        beside_sure = [own, *(names for names in alternatives if set(sure) <= set(names))]
+        yield from _beside(
+            sure, [n for n in _at_least(verdict, words.LIKELIER) if n not in sure], beside_sure
+        )
         return
     for names in alternatives:
         added = [name for name in names if name not in own]
@@ -292,9 +295,14 @@ def _undecided(verdict: Mapping[str, Any]) -> Iterator[str]:
     yield f"Undecided between {len(sets)} explanations"
 
 
-def _beside(sure: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Yield what is sure and what may act beside it, from the fullest line to the shortest."""
+def _beside(sure: Sequence[str], likely: Sequence[str], sets: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield what is sure and what may act beside it, from the fullest line to the shortest; likely: what is likelier
+    than not.
+    """
     found = _capital(titles.listed([titles.short_title(name) for name in sure]))
+    if likely:
+        each = "each " if len(likely) > 1 else ""
+        yield f"{found}; {each}more likely than not: {titles.listed([titles.short_title(n) for n in likely])}"
     also = list(dict.fromkeys(titles.short_title(n) for names in sets for n in names if n not in sure))
     for shown in range(len(also), 0, -1):
         others = len(also) - shown

@@ -26,6 +26,9 @@ def test_what_is_sure_by_itself_leads_where_the_rest_is_undecided() -> None:
     first = told["verdict"]["effects"][0]
     first["probability"] = 0.97
     assert first_screen.headline(told) == "Relaxation; undecided: refitted law or inertia"
+    told["verdict"]["effects"][1]["probability"] = 0.82
+    assert first_screen.headline(told) == "Relaxation; more likely than not: refitted law"
+    told["verdict"]["effects"][1]["probability"] = 0.1
     assert first_screen.lead(told).startswith("The force relaxes")
     assert "cannot decide what else acts" in first_screen.lead(told)
     assert "the likeliest one is shown" in first_screen.lead(told)
