@@ -11,6 +11,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect
+from ..estimation.hidden import LIKE_READING
 from ..planning.waveforms import Limits, another_pressure
 from ..preprocessing.motion import FloatArray
 from ..preprocessing.noise import STILL
@@ -106,9 +107,18 @@ def alternatives_of(
     reasons = {n: reason_of(best, names, explanation, dataset, limits) for n, names in beside_law.items()}
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan"))
-        for name, why in (*reasons.items(), *explanation.hidden)
+        for name, why in (*reasons.items(), *explanation.unshown.reasons)
     ]
-    return (*listed, *unseen)
+    return (*_read_instead(explanation, confidence), *listed, *unseen)
+
+
+def _read_instead(explanation: Explanation, confidence: float) -> list[Alternative]:
+    """Return the sets with an effect that the reading hides in place of one that is named: as likely as the verdict,
+    all together, since nothing decides between them.
+    """
+    best, pairs = explanation.model.names, explanation.read_instead
+    sets = [tuple(sorted({*best, other} - {name})) for name, other in pairs]
+    return [Alternative(names, 0.0, LIKE_READING, confidence / len(sets)) for names in sets]
 
 
 def no_surer_than_alternatives(

@@ -232,12 +232,17 @@ def _judged(
     )
     named, doubted = ([e.probability for e in own] for own in (accepted.effects, accepted.doubted))
     confidence = confidence_of(grounds, named, doubted, explanation.share)
+    replaced = {name for name, _ in explanation.read_instead}
+    confidence *= EITHER if replaced else 1.0
     of_law = _left_by_law(data.fitted, data.baseline) if remainder.size > LIKE_NOISE else 0.0
     may_be_before = of_law > fit.left
     confidence = min(confidence, EITHER) if may_be_before else confidence
     confidence = confidence if contradiction is None else min(confidence, contradiction.most_sure)
     alternatives = alternatives_of(explanation, data.samples, confidence, asked.limits)
-    effects = no_surer_than_alternatives(accepted.effects, alternatives)
+    halved = (
+        replace(e, probability=EITHER * e.probability) if e.name in replaced else e for e in accepted.effects
+    )
+    effects = no_surer_than_alternatives(tuple(halved), alternatives)
     effects = effects if contradiction is None else contradiction.no_surer(effects)
     before = asked.before.judged(fit)
     confidence *= before.probability

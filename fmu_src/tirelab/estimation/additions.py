@@ -85,6 +85,18 @@ def not_followed(signature: Signature, explained: FloatArray, base: Fit, varianc
     return 0.5 * float(left @ left) / variance
 
 
+def followed(signature: Signature, explained: FloatArray, base: Fit) -> float:
+    """Return the cosine between what an effect explains beside a fit, `explained` (m,), and the nearest response of a
+    candidate, both without what the slopes of the fit follow.
+    """
+    asked, columns = explained, signature.columns
+    if base.slopes.shape[1]:
+        beside = outside(base.slopes)
+        asked, columns = beside(asked), np.column_stack([beside(column) for column in columns.T])
+    left, whole = outside(columns)(asked), float(asked @ asked)
+    return float(np.sqrt(max(1.0 - float(left @ left) / whole, 0.0))) if whole else 0.0
+
+
 def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Discrepancy) -> list[float]:
     """Return the gain in log likelihood that each candidate, added to a fit, should bring by its signature.
 

@@ -40,7 +40,7 @@ from .findings import (
 from .first_sets import FirstSets, in_quiet_units, with_signatures
 from .fit import Fit, fitted
 from .held_out import held_out_of
-from .hidden import LIKE_READING, like_law_of_part
+from .hidden import LIKE_READING, Unshown, like_law_of_part, read_instead
 from .indistinct import alike_in, confounded, followed_by_law, leaving_the_same
 from .ranking import MOST_WORK, Ranking, corrected, ranked, with_parts
 
@@ -66,7 +66,7 @@ class Explanation:
     the one it replaces, or by the refitted law in place of the effects that a law of another shape can imitate, and
     that do not leave the same
     same: sets with no more effects that leave the same of the recordings (see `indistinct.leaving_the_same`)
-    hidden: names of effects that the excitation cannot show, and why; remainder: what is left beyond the noise
+    unshown: effects that the recordings cannot show; remainder: what is left beyond the noise
     within_law: names of effects that the refitted law of the set follows entirely
     model: the set, fitted; floors: noise floor of each recording
     compared: which samples of each recording are compared (see `data_checks.compared`)
@@ -77,7 +77,6 @@ class Explanation:
     evidence: tuple[Evidence, ...]
     confounded: tuple[tuple[str, ...], ...]
     same: tuple[tuple[str, ...], ...]
-    hidden: tuple[tuple[str, str], ...]
     within_law: tuple[str, ...]
     remainder: Remainder
     model: FittedModel
@@ -86,7 +85,7 @@ class Explanation:
     excitation: Excitation
     _ranking: Ranking = field(repr=False)
     _samples: Samples = field(repr=False)
-    _like_law: tuple[str, ...] = field(repr=False)
+    unshown: Unshown = field(repr=False)
 
     @cached_property
     def error(self) -> float:
@@ -172,7 +171,12 @@ class Explanation:
         return self if ranking is self._ranking else self._by(self.model.fit, ranking)
 
     def _by(self, fit: Fit, ranking: Ranking) -> Explanation:
-        return _explanation(self._samples, ranking, fit, self.excitation, self.hidden, self._like_law)
+        return _explanation(self._samples, ranking, fit, self.excitation, self.unshown)
+
+    @cached_property
+    def read_instead(self) -> tuple[tuple[str, str], ...]:
+        """Pairs of a named effect and one that would do as well in its place, see `hidden.read_instead`."""
+        return read_instead(self._ranking, self.model.fit, self.unshown.unread)
 
     def in_order(self, most: int) -> tuple[tuple[str, ...], ...]:
         """Return the likeliest sets; before them the one that stands best for all, if it is nearly as likely."""
@@ -254,6 +258,7 @@ def _explained(asked: _Asked) -> Explanation:
     hidden |= dict.fromkeys(misread(raw, dataset.read_anew(recordings)), LIKE_READING)
     excitation = replace(excitation, single_valued=excitation.single_valued | single_valued(raw, dataset))
     hidden |= like_law_of_part(raw, dataset) if LAW in catalogue else {}
+    unread = tuple(s for s in raw if hidden.get(s.name) == LIKE_READING)
     raw = tuple(s for s in raw if s.name not in hidden)
     progress("fitting the sets that can win")
     samples = samples_of(recordings, baseline)
@@ -277,7 +282,8 @@ def _explained(asked: _Asked) -> Explanation:
     del raw, quiet, blocks, again, sets  # they are large, and needed no more
     ranking = _read_best(corrected(ranking, samples), samples.recordings)
     like_law = followed_by_law(signatures, misfit, ranking.best.variance)
-    return _explanation(samples, ranking, ranking.best, excitation, tuple(hidden.items()), like_law)
+    unshown = Unshown(tuple(hidden.items()), unread, like_law)
+    return _explanation(samples, ranking, ranking.best, excitation, unshown)
 
 
 def _filtered_noises(fit: Fit, samples: Samples) -> list[Noise | None]:
@@ -323,8 +329,7 @@ def _explanation(
     ranking: Ranking,
     chosen: Fit,
     excitation: Excitation,
-    hidden: tuple[tuple[str, str], ...],
-    like_law: tuple[str, ...],
+    unshown: Unshown,
 ) -> Explanation:
     order = sorted(range(len(ranking.fits)), key=lambda i: ranking.fits[i] is not chosen)
     same = leaving_the_same(chosen, ranking.fits)
@@ -365,8 +370,7 @@ def _explanation(
         ),
         tuple(n for n in confounded(chosen, ranking, excitation) if n not in same),
         same,
-        hidden,
-        tuple(n for n in like_law if LAW in chosen.names and n not in chosen.names),
+        tuple(n for n in unshown.like_law if LAW in chosen.names and n not in chosen.names),
         remainder_of(chosen),
         FittedModel(chosen),
         tuple(e.floor for e in chosen.problem.dataset.experiments),
@@ -374,7 +378,7 @@ def _explanation(
         excitation,
         ranking,
         samples,
-        like_law,
+        unshown,
     )
 
 

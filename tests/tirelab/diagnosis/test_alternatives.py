@@ -40,7 +40,8 @@ def explained_by_sets(*sets: tuple[str, float, float], **more: Any) -> Any:
         confounded=more.get("confounded", ()),
         same=more.get("same", ()),
         share=more.get("share", 1.0),
-        hidden=more.get("hidden", ()),
+        unshown=SimpleNamespace(reasons=more.get("hidden", ())),
+        read_instead=more.get("read_instead", ()),
         within_law=more.get("within_law", ()),
         excitation=SimpleNamespace(
             timed=True,
@@ -305,3 +306,12 @@ def test_what_is_of_the_deflection_in_this_motion_alone_is_told_by_another_motio
         "they depend on the deflection only in this motion: load and unload to two depths"
     )
     assert "in this motion" not in reason_of(("recalibration",), ("inertia",), explained_by_sets(*sets), RIDE)
+
+
+def test_effects_that_the_reading_hides_in_place_of_one_share_what_the_verdict_has() -> None:
+    pairs = (("force_lag", "viscous_damping"), ("force_lag", "inertia"))
+    explanation = explained_by_sets(("bottoming force_lag", 0.0, 1.0), read_instead=pairs)
+    first, second = alternatives_of(explanation, RIDE, 0.4)
+    assert (first.names, second.names) == (("bottoming", "viscous_damping"), ("bottoming", "inertia"))
+    assert first.probability == second.probability == pytest.approx(0.2)
+    assert "use a finer gauge" in first.reason

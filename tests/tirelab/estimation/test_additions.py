@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tirelab.estimation.additions import additions, not_followed, predicted_gains
+from tirelab.estimation.additions import additions, followed, not_followed, outside, predicted_gains
 from tirelab.estimation.fit import fitted
 from tirelab.regressors.dataset import Dataset
 from tirelab.regressors.signature import Signature
@@ -64,3 +64,20 @@ def test_a_candidate_follows_its_own_response_and_what_a_fitted_parameter_does_b
         dataset, [{"viscous_damping": (500.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0)}], noise, 1.0, -np.inf
     )
     assert not_followed(law, 10.0 * beside.slopes[:, 0], beside, 1.0) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_how_far_a_response_is_followed_is_a_cosine(
+    dataset: Dataset, signatures: tuple[Signature, ...], noise: Discrepancy
+) -> None:
+    """Of a response and as much of a curve across it half of the power is followed: cos(45 degrees); the drift beside
+    them, a few columns of 2000, turns them by hardly a hundredth.
+    """
+    nothing = fitted(dataset, [{}], noise, noise.highest, -np.inf)
+    damper = next(s for s in signatures if s.name == "viscous_damping")
+    own = damper.mean / np.linalg.norm(damper.mean)
+    across = np.random.default_rng(1).standard_normal(own.size)
+    across = outside(damper.columns)(across)
+    across /= np.linalg.norm(across)
+    assert followed(damper, own, nothing) == pytest.approx(1.0)
+    assert followed(damper, across, nothing) == pytest.approx(0.0, abs=0.03)
+    assert followed(damper, own + across, nothing) == pytest.approx(np.sqrt(0.5), abs=0.03)
