@@ -207,7 +207,9 @@ def test_without_a_time_nothing_that_depends_on_it_is_found() -> None:
     untimed = Recording("untimed", r.time, r.deflection, r.surface_radius, r.force, timed=False)
     catalogue = ("viscous_damping", "warm_up", "force_offset")
     found = explain_misfit([untimed], TireModel(), catalogue, lambda s: None)
-    assert dict(found.hidden) == dict.fromkeys(("viscous_damping", "warm_up"), "the recording has no time")
+    assert dict(found.unshown.reasons) == dict.fromkeys(
+        ("viscous_damping", "warm_up"), "the recording has no time"
+    )
     assert {n for e in found.evidence for n in e.names} <= {"force_offset"}
 
 
@@ -315,7 +317,7 @@ def test_a_part_whose_preload_was_fitted_without_what_relaxes_has_another_preloa
     found = explain_misfit([replace(silent, force=force)], baseline, names, lambda stage: None)
     assert set(found.model.names) == {REFITTED_LAW, "viscoelastic_relaxation"}
     assert found.model.tire.preload == pytest.approx(25.0, abs=0.2)
-    reasons = dict(found.hidden)
+    reasons = dict(found.unshown.reasons)
     assert "preload" in reasons["force_offset"]
     assert "preload" in reasons["deflection_offset"]
 
@@ -343,7 +345,7 @@ def test_a_part_whose_gap_was_fitted_without_what_relaxes_has_another_gap() -> N
     assert changed.std < 1e-4
     ((_, (offset,)),) = [(e, v) for e, v in found.model.tire.effects if e is gap]
     assert offset == pytest.approx(-0.0015 - changed.value)
-    assert "gap" in dict(found.hidden)["deflection_offset"]
+    assert "gap" in dict(found.unshown.reasons)["deflection_offset"]
 
 
 def test_the_deflection_of_a_tire_may_have_another_zero_whatever_the_baseline_has() -> None:
@@ -351,7 +353,7 @@ def test_the_deflection_of_a_tire_may_have_another_zero_whatever_the_baseline_ha
     found = explain_misfit(
         RIDES, believed, (REFITTED_LAW, "deflection_offset", "viscous_damping"), lambda stage: None
     )
-    assert "deflection_offset" not in dict(found.hidden)
+    assert "deflection_offset" not in dict(found.unshown.reasons)
 
 
 def late(lag: float) -> Recording:
