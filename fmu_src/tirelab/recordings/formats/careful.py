@@ -238,7 +238,7 @@ class RowReader:
                     f"{self.path.name}, row {number}: the line does not end in {LONGEST_LINE} characters; "
                     "the file is damaged there: export it anew"
                 )
-            plain = with_plain_marks(line if line.strip("\0\r\n") else line.replace("\0", ""))
+            plain = with_plain_marks(line)
             yield with_tabs(plain, len(self.layout.headers)) if self.layout.spaced else plain
 
     def _other_width(self, line: int, row: Sequence[str]) -> RecordingError:

@@ -61,11 +61,16 @@ class NumberStyle:
         return not marked or (self.thousands != "." and all(map(self._compiled.match, marked)))
 
 
+_ZEROS = re.compile(r"^\0+(?=\r?$)", re.MULTILINE)
+"""A line of zero bytes, which Python's csv before 3.11 does not take."""
+
+
 def with_plain_marks(text: str) -> str:
     """Return a text whose numbers have the minus of a keyboard, not that of typography, and the exponent mark E where
     Fortran writes D: 1.5D+01. Files that were joined have byte order marks within them, which are left out, and cells
-    that a spreadsheet is to leave as they are, ="0.00", are between quotes alone.
+    that a spreadsheet is to leave as they are, ="0.00", are between quotes alone. A line of zero bytes is an empty one.
     """
+    text = _ZEROS.sub("", text) if "\0" in text else text
     text = _FORMULA.sub(r'"\1\2"', text) if FORMULA in text else text
     text = text.replace(BYTE_ORDER_MARK, "") if BYTE_ORDER_MARK in text else text
     text = _MINUS.sub("-", text) if "\N{MINUS SIGN}" in text else text
