@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pint
@@ -67,6 +68,11 @@ ISSUE = {
 """Physics that the project set out to name."""
 
 
+def quantity(unit: str) -> Any:
+    """Return one of a unit; of "1", pint 0.24, the last for Python 3.10, makes a plain number."""
+    return REGISTRY.Quantity(REGISTRY(unit))
+
+
 @EFFECTS
 def test_a_prior_scales_with_the_recording_as_the_unit_of_its_parameter_does(effect: Effect) -> None:
     """A fibre of micrometres and a column of meganewtons have the same priors, in proportion."""
@@ -74,8 +80,8 @@ def test_a_prior_scales_with_the_recording_as_the_unit_of_its_parameter_does(eff
         if parameter.prior is None or parameter.name in ABSOLUTE:
             continue
         above, _, below = parameter.prior.scale.partition("/")
-        scale = REGISTRY(QUANTITY_UNITS[above]) / REGISTRY(QUANTITY_UNITS[below or "1"])
-        assert REGISTRY(parameter.unit.replace(".", "*")).dimensionality == scale.dimensionality, (
+        scale = quantity(QUANTITY_UNITS[above]) / quantity(QUANTITY_UNITS[below or "1"])
+        assert quantity(parameter.unit.replace(".", "*")).dimensionality == scale.dimensionality, (
             parameter.name
         )
 
