@@ -114,6 +114,7 @@ DERIVED = (
     "estimation/minimise.STEP",
     "estimation/problem.COMMON",
     "estimation/problem.KINKS",
+    "estimation/problem.MOST_OF_FACTOR",
     "estimation/problem.MOST_UNUSUAL",
     "estimation/ranking.MOST_EFFECTS",
     "estimation/ranking.SWAPPED",

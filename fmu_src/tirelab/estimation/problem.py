@@ -48,6 +48,10 @@ MOST_UNUSUAL = 3.0
 """Distance, in standard deviations of its prior, up to which a form may lie: its whole range, as the priors' sources
 state them. A long recording can pay for any form, and what asks for a more unusual one is another effect's."""
 
+MOST_OF_FACTOR = math.log(1000.0)
+"""Largest logarithm of a factor on the believed law: a thousand, as between newtons and kilonewtons. A spring that is
+believed and is not there has to go; what is left of it another effect would take away."""
+
 KINKS = RAMPS.shape[1]
 """Number of kinks of a refitted law."""
 
@@ -131,7 +135,8 @@ def parameters_of_law(
     labels += [f"{w}, surface {i}" for i in range(surfaces) for w in labels[:2]] if surfaces > 1 else []
     groups = [1, 2, 3, 4, *[5] * KINKS, *[6, 7] * surfaces][: len(spreads)]
     units = ["N" if group == 5 and preload else "1" for group in groups]
-    bounds = [2.0 * kink / KINK if group == 5 else 2.0 for group in groups]
+    most_of = {1: MOST_OF_FACTOR, 5: 2.0 * kink / KINK, 6: MOST_OF_FACTOR}
+    bounds = [most_of.get(group, 2.0) for group in groups]
     shape = tuple(
         FreeParameter(
             *(LAW, i, label, unit, 0.0, spread, False, -most / spread, most / spread, -most, most),

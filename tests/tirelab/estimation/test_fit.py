@@ -9,6 +9,7 @@ from radialtire import CATALOGUE, PowerLaw, TireModel
 from tirelab.estimation.fit import LEAST_GAIN, fitted
 from tirelab.estimation.problem import law_start, with_readings
 from tirelab.names import REFITTED_LAW
+from tirelab.recordings.recording import Recording
 from tirelab.regressors.dataset import dataset_of
 from tirelab.selection.search import PRIOR_ODDS, discrepancy_of
 from tirelab.simulation.simulate import simulate
@@ -68,3 +69,15 @@ def test_a_law_of_another_shape_is_one_hypothesis_more_where_it_is_likelier(
         assert len(fit.hypotheses) == count
         own = fit.plain if fit.plain is not None and count == 1 else fit
         assert fit.log_posterior == own.log_likelihood - count * PRIOR_ODDS
+
+
+def test_a_spring_that_is_believed_and_not_there_is_refitted_to_nothing() -> None:
+    """A part that moves 20 mm each way and has 1 N of noise alone, beside a believed spring of 400 N there."""
+    time = np.linspace(0.0, 20.0, 2001)
+    x = 0.02 * np.sin(0.5 * np.pi * time)
+    noise = np.random.default_rng(2).normal(size=time.size)
+    tire = TireModel(PowerLaw(200.0, 1.0), tested_range=None, two_sided=True, inflated=False)
+    dataset = dataset_of([Recording("free", time, x, np.full(time.size, np.inf), noise)], tire)
+    law = discrepancy_of(dataset.misfit, 0.0)
+    fit = fitted(dataset, [{REFITTED_LAW: law_start(dataset)}], law, law.highest, -np.inf)
+    assert fit.power < 1.1 * fit.residual.size
