@@ -25,6 +25,10 @@ MOST_OF_STROKE = 0.5
 """Part of the stroke that a first loading covers at least: the law of a shorter one says nothing of the rest."""
 
 
+HELD = 0.02
+"""Part of a way within which of its end the part is held there."""
+
+
 @dataclass(frozen=True)
 class FirstLoading:
     """begins, ends [s]: its time; above [N]: root mean square by which it lies above the later loadings at the same
@@ -65,7 +69,18 @@ def first_loading(recording: Recorded, residual: Array | None = None) -> FirstLo
     above, loop = (float(np.sqrt(np.mean(v[known] ** 2))) for v in (new - again, again - out))
     if np.mean((new - again)[known]) <= 0.0 or above <= loop:
         return None
-    return FirstLoading(float(recording.time[first[0]]), float(recording.time[first[1]]), above, loop)
+    ends = _reached(recording, first)
+    return FirstLoading(float(recording.time[first[0]]), float(recording.time[ends]), above, loop)
+
+
+def _reached(recording: Recorded, way: Sequence[int]) -> int:
+    """Return the sample with which a way (first and last sample) ends, or that from which it is a hold, if it is one
+    for longer than it was under way: its largest reading may be one of noise, late in the hold.
+    """
+    begin, end = way
+    x, time = recording.deflection[begin : end + 1], recording.time
+    there = begin + int(np.argmax(x >= x[-1] - HELD * (x[-1] - x[0])))
+    return there if time[end] - time[there] > time[there] - time[begin] else end
 
 
 def _mean_force(x: Array, force: Array, legs: Iterable[Sequence[int]], places: Array) -> Array:

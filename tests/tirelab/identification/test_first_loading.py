@@ -75,3 +75,12 @@ def test_what_is_proposed_finds_the_law_of_the_first_loading(tmp_path: Path) -> 
     assert "first loading" not in done.output
     # 20 N/mm is 200 N/cm. Friction is in the preload, and the first 2 mm are soft already: 10 N less there.
     assert read_tire(out).law.coefficient == pytest.approx(200.0, rel=0.02)  # type: ignore[attr-defined]
+
+
+def test_a_first_loading_ends_where_a_long_hold_begins() -> None:
+    """A ramp of 5 s, a hold of 12 s in which the gauge trembles, and cycles: the law is that of the ramp."""
+    held = np.full(600, 0.02) + 2e-6 * np.random.default_rng(6).standard_normal(600)
+    ramp, cycle = np.linspace(0.0, 0.02, 250), LARGE[:1000]
+    found = first_loading(pressed(0.5, 2.0, np.concatenate([ramp, held, cycle[500:], cycle])))
+    assert found is not None
+    assert (found.begins, found.ends) == pytest.approx((0.0, 5.0), abs=0.15)
