@@ -173,17 +173,17 @@ def mass_alike(
         m = -k / w^2,    k the slope of the force over the deflection, w from the usual time between two passages of
                          the middle
 
-    Infinite where the force does not fall, or the part is not driven to and fro. `time` [s], `deflection` [m],
-    `force` [N], of shape (samples,).
+    Infinite where the force does not fall, the part is not driven to and fro, or the clock stands or begins anew.
+    `time` [s], `deflection` [m], `force` [N], of shape (samples,).
     """
     far, found = _passages(deflection)
     passages = time[far[found + 1]]
     x = deflection - deflection.mean()
     fall = -float(x @ (force - force.mean()))
-    if passages.size < 2 or fall <= 0.0:
+    usual = float(np.median(np.diff(passages))) if passages.size > 1 else 0.0
+    if usual <= 0.0 or fall <= 0.0:
         return float("inf")
-    rate = np.pi / float(np.median(np.diff(passages)))
-    return fall / float(x @ x) / rate**2
+    return fall / float(x @ x) / (np.pi / usual) ** 2
 
 
 def _middle(deflection: NDArray[np.float64]) -> float:

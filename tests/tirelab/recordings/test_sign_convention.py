@@ -258,6 +258,15 @@ def test_a_mass_is_found_by_the_force_that_falls_with_its_way(rests: float) -> N
     assert mass_alike(time, deflection, -force) == np.inf
 
 
+def test_a_clock_that_stands_tells_no_mass() -> None:
+    """Segments of a file that each begin at 0, or a clock that was not read."""
+    x = 1e-3 * np.sin(np.linspace(0.0, 20.0 * np.pi, 2000))
+    assert mass_alike(np.zeros(x.size), x, -1e4 * x) == np.inf
+    assert mass_alike(np.linspace(0.0, 10.0, x.size), x, -1e4 * x) == pytest.approx(
+        1e4 / (2.0 * np.pi) ** 2, rel=0.01
+    )
+
+
 def test_a_rest_at_one_end_that_is_longer_than_the_motion_hides_neither_mass_nor_work() -> None:
     """2 s at 5 Hz between 0 and 24 mm, then 5 s at 24 mm: a mass of 1.7 kg, or friction of 10 N."""
     time = 1e-3 * np.arange(7000)

@@ -39,6 +39,8 @@ SAMPLE = 500
 
 _UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.IGNORECASE)
 
+_LABELLED = re.compile(r"#\s*(columns|channels|fields|units)\s*[:=]\s*(.+)", re.IGNORECASE)
+
 _MARKED = re.compile(r"^\s*(?:[%!;*>]+|//+)\s*(?=\w)")
 """What programs write before a line that holds no numbers, as others write #."""
 
@@ -191,6 +193,8 @@ def _names(
     names = _commented_names(lines[:start], separator)
     if len(names) == len(header):
         return names, False, (f"column names taken from the comment in row {start}",)
+    if labelled := _labelled_names(lines[:start], separator, len(header)):
+        return labelled, False, ("column names taken from the comments above the numbers",)
     above = _words_above(lines[:start], separator)
     if len(above) > len(header):
         unheld = " and ".join(map(quoted, above[len(header) :]))
@@ -358,6 +362,17 @@ def _commented_names(preamble: Sequence[str], separator: str) -> list[str]:
     if above and len(above[0]) == len(cells) and is_units(cells):
         return [f"{name.strip()} [{bare_unit(unit)}]" for name, unit in zip(above[0], cells, strict=True)]
     return cells
+
+
+def _labelled_names(preamble: Sequence[str], separator: str, width: int) -> list[str]:
+    """The names of so many columns, with their units, in comments that say so: `# columns: a b`, `# units: m N`."""
+    told: dict[bool, list[str]] = {}
+    for found in filter(None, (_LABELLED.match(line.strip()) for line in preamble)):
+        cells = found[2].split(separator) if separator in found[2] else found[2].split()
+        if len(cells) == width:
+            told.setdefault(found[1].lower() == "units", [cell.strip() for cell in cells])
+    names, units = told.get(False, []), told.get(True, [""] * width)
+    return [f"{name} [{bare_unit(unit)}]" if unit else name for name, unit in zip(names, units, strict=False)]
 
 
 def _words_above(preamble: Sequence[str], separator: str) -> list[str]:

@@ -83,3 +83,21 @@ def test_other_tables_and_prose_are_none(line: str) -> None:
 def test_a_line_of_text_stays() -> None:
     assert with_tabs("made by B and C\n", 3) == "made by B and C\n"
     assert with_tabs("# 1 2\r\n", 2) == "# 1\t2\r\n"
+
+
+def test_names_and_units_in_comments_that_say_so(tmp_path: Path) -> None:
+    """As scanning probes write them: of a segment, above its numbers, with more about it between and below."""
+    head = (
+        '# segment: extend\n# columns: time deflection force\n# fancyNames: "t" "x" "F"\n# units: s mm N\n#\n'
+    )
+    path = tmp_path / "probe.txt"
+    path.write_text(head + rows("{:.1f} {:.3f} {:.2f}"), encoding="utf-8")
+    assert_read(path)
+    assert (
+        "column names taken from the comments above the numbers" in read_recording(path, radius="flat").notes
+    )
+    path.write_text(
+        head.replace("time deflection", "deflection") + rows("{:.1f} {:.3f} {:.2f}"), encoding="utf-8"
+    )
+    with pytest.raises(RecordingError, match="has no header row"):
+        read_recording(path, radius="flat")
