@@ -110,7 +110,7 @@ def localize(
     noises: Sequence[FloatArray],
     left: Sequence[FloatArray] | None = None,
 ) -> tuple[Span, ...]:
-    """Return the places of the residuals [N] of each recording, the most concentrated first; none in noise alone.
+    """Return the places of the residuals [N], the most concentrated first, of equals the larger; none in noise alone.
 
     noises (n,) [N]: noise floor of every sample of each recording; left [N]: residuals of a correction that explains
     everything: they are noise, and their correlation gives the number of independent samples; None: the noise counts as
@@ -122,7 +122,7 @@ def localize(
     # If the noise floor is too high, the densest span has more excess than all samples together.
     whole = max(float(np.sum(samples.excess)), *(_most(axis, bins.excess) for axis, bins in axes), 1e-300)
     found = [s for axis, bins in axes for s in _spans(axis, replace(bins, whole=whole), looked_at)]
-    return tuple(sorted(found, key=lambda s: -s.concentration))
+    return tuple(sorted(found, key=lambda s: (-round(s.concentration, 9), -s.share)))
 
 
 def law_corrected(
