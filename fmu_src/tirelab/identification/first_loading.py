@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..preprocessing.samples import Recorded, is_timed
 from .branches import turning_points
+from .part_tire import AT_REST
 
 Array = NDArray[np.float64]
 
@@ -23,10 +24,6 @@ PLACES = 20
 
 MOST_OF_STROKE = 0.5
 """Part of the stroke that a first loading covers at least: the law of a shorter one says nothing of the rest."""
-
-
-HELD = 0.02
-"""Part of a way within which of its end the part is held there."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +76,7 @@ def _reached(recording: Recorded, way: Sequence[int]) -> int:
     """
     begin, end = way
     x, time = recording.deflection[begin : end + 1], recording.time
-    there = begin + int(np.argmax(x >= x[-1] - HELD * (x[-1] - x[0])))
+    there = begin + int(np.argmax(x >= x[-1] - AT_REST * (x[-1] - x[0])))
     return there if time[end] - time[there] > time[there] - time[begin] else end
 
 
