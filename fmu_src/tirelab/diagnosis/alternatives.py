@@ -79,7 +79,7 @@ def alternatives_of(
     verdict's allows; what then remains belongs to sets that were not compared.
 
     Effects that the excitation cannot show, and those that the verdict's refitted law can imitate, are listed last, in
-    addition to the verdict's own, with the reason.
+    addition to the verdict's own, with the reason; not those that are listed in place of one of its effects.
     """
     best, same = explanation.model.names, explanation.same
     own = next(e for e in explanation.evidence if set(e.names) == set(best))
@@ -105,9 +105,11 @@ def alternatives_of(
     listed_sets = {frozenset(a.names) for a in listed}
     beside_law = {n: (*best, n) for n in explanation.within_law if frozenset((*best, n)) not in listed_sets}
     reasons = {n: reason_of(best, names, explanation, dataset, limits) for n, names in beside_law.items()}
+    instead = {other for _, other in explanation.read_instead}
     unseen = [
         Alternative(tuple(sorted({*best, name})), 0.0, why, float("nan"))
         for name, why in (*reasons.items(), *explanation.unshown.reasons)
+        if name not in instead
     ]
     return (*_read_instead(explanation, confidence), *listed, *unseen)
 

@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import islice
 
 import numpy as np
 
@@ -200,10 +201,8 @@ def recommended(
 ) -> DiscriminatingTest | None:
     """Return the test that separates the likeliest alternative that a test can; else the one that comes nearest."""
     nearest: DiscriminatingTest | None = None
-    for alternative in alternatives[:MOST_TESTED]:
-        model = explanation.alternative_model(alternative.names)
-        if model is None:
-            continue
+    models = (explanation.alternative_model(alternative.names) for alternative in alternatives)
+    for model in islice((m for m in models if m is not None), MOST_TESTED):
         within = limits_within_force(limits, partial(_peak, (explanation.model, model)))
         if within is None:
             continue

@@ -315,3 +315,11 @@ def test_effects_that_the_reading_hides_in_place_of_one_share_what_the_verdict_h
     assert (first.names, second.names) == (("bottoming", "viscous_damping"), ("bottoming", "inertia"))
     assert first.probability == second.probability == pytest.approx(0.2)
     assert "use a finer gauge" in first.reason
+
+
+def test_an_effect_that_the_reading_hides_is_listed_once() -> None:
+    """The damper stands in place of the force's lag; the mass, which nothing names in place of one, beside it."""
+    hidden = (("viscous_damping", "use a finer gauge"), ("inertia", "use a finer gauge"))
+    pairs = (("force_lag", "viscous_damping"),)
+    explanation = explained_by_sets(("force_lag", 0.0, 1.0), read_instead=pairs, hidden=hidden)
+    assert listed(explanation, 0.4) == [("viscous_damping",), ("force_lag", "inertia")]

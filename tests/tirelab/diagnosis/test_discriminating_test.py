@@ -12,6 +12,7 @@ from scipy.stats import norm
 from tirelab.diagnosis.alternatives import USUAL_SPEED
 from tirelab.diagnosis.discriminating_test import (
     DECISIVE,
+    MOST_TESTED,
     discriminate,
     expected_gain,
     limits_of_rig,
@@ -185,3 +186,14 @@ def test_the_recommended_test_presses_no_model_beyond_the_largest_force_of_the_r
     assert peaks[0] > 1000.0
     assert peaks[1] <= 500.0
     assert recommended(explanation, asked, 6.0, replace(limits, force=1e-6)) is None
+
+
+def test_alternatives_that_were_not_fitted_take_no_place_of_those_that_a_test_is_searched_for():
+    one, other = viscous(), friction()
+    explanation = SimpleNamespace(
+        model=one, alternative_model=lambda names: None if names == "not" else other
+    )
+    asked = [*(SimpleNamespace(names="not") for _ in range(MOST_TESTED)), SimpleNamespace(names=other.names)]
+    found = recommended(explanation, asked, 6.0, Limits(deepest=0.02, fastest=0.1))
+    assert found is not None
+    assert found.between == (one.names, other.names)
