@@ -24,6 +24,7 @@ WORDS_ONLY = (
     "outcome.py",
     "summary.py",
     "verdict.py",
+    "written_files.py",
 )
 """Modules of these rooms whose numbers cannot change a verdict."""
 
@@ -42,6 +43,12 @@ BESIDE = (
     "preprocessing/samples.ROWS",
 )
 """Modules or numbers of these rooms that make what is shown beside a verdict: places, the next test, reasons."""
+
+NOT_ZERO = 1e-6
+"""What only keeps a division or a logarithm from zero, or a sum from its rounding."""
+
+OF_UNITS = (100.0, 1000.0)
+"""Centimetres and millimetres in a metre, and percent."""
 
 SENSITIVITY = Path(__file__).parent / "sensitivity.json"
 
@@ -62,6 +69,13 @@ DERIVED = (
     "preprocessing/data_checks.FOLLOWED",
     "preprocessing/data_checks.MAJORITY",
     "preprocessing/data_checks.ONWARDS",
+    "preprocessing/gauge.ON_GRID",
+    "preprocessing/levels.FEWEST_READINGS",
+    "selection/search.FEWEST_EACH",
+    "estimation/problem.FARTHEST",
+    "estimation/minimise.DAMPED",
+    "regressors/dataset.LARGEST",
+    "diagnosis/confidence.MOST_TRANSFER",
     "preprocessing/data_checks.SETTLING",
     "preprocessing/gauge.FINEST_STEP",
     "preprocessing/gauge.GRID_TOLERANCE",
@@ -160,7 +174,15 @@ EFFORT = (
     "regressors/signature.BLOCKS_OF_PART",
     "regressors/signature.PARTS",
     "regressors/signature.PROBED",
-    "regressors/signature.LEAST_DRAWN",
+    "regressors/draws.LEAST_DRAWN",
+    "regressors/draws.MOST_OF_LOAD",
+    "regressors/draws.SIZED",
+    "regressors/draws.OVERSIZED",
+    "preprocessing/data_checks.PARTS_OF_STAY",
+    "selection/search.STARTS",
+    "estimation/additions.PREDICTED_SIZES",
+    "estimation/additions.LEAST_START",
+    "estimation/fit.SETTLED",
     "selection/search.LOST",
     "selection/search.MOST_CANDIDATES",
     "selection/search.LEAST_SIZE",
@@ -234,6 +256,41 @@ BOUNDS = (
 )
 """Those of the effort of which more is better: what is halved and doubled together."""
 
+ARITHMETIC: dict[str, str] = {
+    "preprocessing/data_checks.check_recordings 0.001": "deflections a thousandth of the span apart are distinct",
+    "preprocessing/data_checks.spikes 1.5": "variance of the mean of a sample's two differences, over its own",
+    "preprocessing/gauge.deflection_noise 1.5": "between one step and two: second differences of a rounded motion",
+    "preprocessing/gauge.deflection_noise 5": "order of the differences that white noise is told by",
+    "preprocessing/gauge.deflection_noise 12.0": "variance of a rounding error: step^2 / 12",
+    "preprocessing/gauge.deflection_noise 252.0": "variance of fifth differences of white noise",
+    "preprocessing/gauge.read_again 12.0": "variance of a rounding error: step^2 / 12",
+    "preprocessing/levels._third_differences 3.0": "weights of third differences",
+    "preprocessing/motion._motion 12.0": "variance of a rounding error: step^2 / 12",
+    "preprocessing/motion._smoothed 0.001": "intervals that differ by less are a clock's rounding",
+    "preprocessing/motion._resolved 3.0": "five samples, from -2 to 2",
+    "preprocessing/motion._resolved 5": "five samples: one more than a cubic has coefficients",
+    "preprocessing/motion.smoothed 4.0": "norm of the square of a Gaussian window",
+    "preprocessing/motion._spline 4.0": "an arc at each end, each within a quarter",
+    "preprocessing/motion._spline 6": "the filter of a spline of third differences",
+    "preprocessing/motion._ends 2.5": "second derivative of the arc",
+    "preprocessing/motion._weights_of_end 6": "the filter of a spline of third differences",
+    "preprocessing/motion._third_differences_squared 3.0": "weights of third differences",
+    "preprocessing/turns._at_rest 5": "a reading, two before it and two after it",
+    "regressors/signature._spline 3.0": "degree of a cubic spline",
+    "selection/search.profile 4.0": "solution of a quadratic equation",
+    "selection/search.evidence_of 4.0": "the first V of a search is a quarter of the highest",
+    "selection/search.evidence_of 0.0001": "below the least size that is searched",
+    "estimation/problem.parameters_of_law 5": "number of a group of parameters",
+    "estimation/problem.parameters_of_law 6": "number of a group of parameters",
+    "estimation/problem.parameters_of_law 7": "number of a group of parameters",
+    "estimation/problem.parameters_of_law 8": "number of a group of parameters",
+    "estimation/problem.parameters_of_law 9": "number of a group of parameters",
+    "diagnosis/alternatives._is_held 0.25": "a turn goes a quarter as far as the speed at its ends would",
+    "estimation/problem.residual 1000000.0": "a force that is no number is far from every reading",
+}
+"""Numbers that stand within a function, other than a half, whole ones up to four, units of length and percent in words,
+and what keeps a division from zero: where, and what they are."""
+
 TOGETHER = "effort"
 """Under this name they stand in the file of the sensitivities."""
 
@@ -286,6 +343,31 @@ def constants() -> list[Constant]:
     return found
 
 
+def within_functions() -> dict[str, str]:
+    """Return the lines of the numbers that stand within functions, by their place and value (see ARITHMETIC)."""
+    found: dict[str, str] = {}
+    for room in ROOMS:
+        for path in sorted((SOURCE / room).glob("*.py")):
+            module, source = f"{room}/{path.stem}", path.read_text(encoding="utf-8")
+            if path.name in WORDS_ONLY or module in BESIDE:
+                continue
+            lines = source.splitlines()
+            for function in (f for f in ast.walk(ast.parse(source)) if isinstance(f, ast.FunctionDef)):
+                for n in _numbers_in(function):
+                    found[f"{module}.{function.name} {n.value}"] = lines[n.lineno - 1].strip()
+    return found
+
+
+def _numbers_in(function: ast.FunctionDef) -> Iterator[ast.Constant]:
+    """Yield the numbers that a function decides with; those in its sentences are of a reader."""
+    told = {id(n) for text in ast.walk(function) if isinstance(text, ast.JoinedStr) for n in ast.walk(text)}
+    for n in ast.walk(function):
+        if isinstance(n, ast.Constant) and type(n.value) in (int, float) and id(n) not in told:
+            plain = n.value in (0.5, 1.0, 2.0, *OF_UNITS) or abs(n.value) <= NOT_ZERO
+            if not plain and not (isinstance(n.value, int) and n.value <= 4):
+                yield n
+
+
 def _of_module(module: str, path: Path) -> Iterator[Constant]:
     body = ast.parse(path.read_text(encoding="utf-8")).body
     for number, statement in enumerate(body):
@@ -327,8 +409,9 @@ def page() -> str:
         "# The numbers that can change a verdict",
         "",
         "For the colleague who asks why a verdict fell as it did, or who wants to change a number. Written by",
-        "`python tests/constants.py`; a test checks that every named number of the packages between a recording and",
-        "its verdict is here. A function's own arithmetic (a half, a tenth of a percent of a span) is not.",
+        "`python tests/constants.py`; a test checks that every number of the packages between a recording and its",
+        "verdict is here. What stands within a function and decides nothing (a half, a weight of third differences)",
+        "is in the last table.",
         "",
         *(f"- **{kind}** ({counts[kind]}): {text}" for kind, text in KINDS.items() if counts[kind]),
         "",
@@ -352,8 +435,21 @@ def page() -> str:
         "| number | value | kind | what it is |",
         "|---|---|---|---|",
         *(f"| `{c.place}` | {c.value} | {c.kind} | {_plain(c)} |" for c in every if c.beside),
+        "",
+        "## Numbers within functions",
+        "",
+        "Coefficients of equations and orders of differences. A half, whole numbers up to four, millimetres, percent",
+        "and what keeps a division from zero are not listed.",
+        "",
+        "| function | number | what it is |",
+        "|---|---|---|",
+        *(f"| `{place}` | {value} | {what} |" for (place, value), what in _arithmetic()),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _arithmetic() -> list[tuple[tuple[str, str], str]]:
+    return [((key.split()[0], key.split()[1]), what) for key, what in ARITHMETIC.items()]
 
 
 def _told(chosen: int) -> list[str]:

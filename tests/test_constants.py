@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from constants import BESIDE, BOUNDS, DERIVED, EFFORT, PRIOR, constants, page
+from constants import (
+    ARITHMETIC,
+    BESIDE,
+    BOUNDS,
+    DERIVED,
+    EFFORT,
+    PRIOR,
+    constants,
+    page,
+    within_functions,
+)
 
 PAGE = Path(__file__).parents[1] / "examples" / "docs" / "constants.md"
 
@@ -34,3 +44,10 @@ def test_every_number_says_what_it_is() -> None:
 def test_what_is_said_to_stand_beside_a_verdict_is_there() -> None:
     places = [c.place for c in constants()]
     assert all(any(p == b or p.startswith(b + ".") for p in places) for b in BESIDE)
+
+
+def test_no_function_decides_with_a_number_that_has_no_name() -> None:
+    """Such a number would be in no table: give it a name, its kind and its words, or say what it is (ARITHMETIC)."""
+    found = within_functions()
+    assert {key: line for key, line in found.items() if key not in ARITHMETIC} == {}
+    assert set(ARITHMETIC) <= set(found)

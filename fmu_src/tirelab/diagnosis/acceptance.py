@@ -29,7 +29,7 @@ from radialtire import TireModel
 
 from ..estimation.explanation import Explanation
 from ..names import REFITTED_LAW, plain
-from ..preprocessing.data_checks import compared
+from ..preprocessing.data_checks import MAJORITY, compared
 from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
 from ..preprocessing.noise import NEGLIGIBLE, STILL
@@ -265,7 +265,7 @@ def _shows_as_much(
         np.maximum(e, 0.0) / np.maximum(n, 1) for e, n in zip((fitted, held_out), samples, strict=True)
     )
     # The way back of one loop is not driven like what stays fitted of it, its first few samples.
-    alike = (4.0 * each >= other) & (samples[0] >= NEGLIGIBLE * samples[1])
+    alike = (each >= MAJORITY**2 * other) & (samples[0] >= NEGLIGIBLE * samples[1])
     whole = np.maximum(all_of_it, 0.0).sum()
     return bool(
         np.sum(~fits & inside) >= FEWEST_EVENTS

@@ -30,8 +30,8 @@ from .acceptance import HeldOut
 
 Grounds = Mapping[str, float]
 
-MOST_LOG_ODDS = 15.0
-"""Largest size of log odds that is used as a ground."""
+MOST_LOG_ODDS, MOST_TRANSFER = 15.0, 3.0
+"""Largest size of log odds, and of the logarithm of a held-out error over the fitted one, that is used as a ground."""
 
 LEAST_SHARE = 1e-4
 """Shares of the misfit below this one count as this one."""
@@ -248,7 +248,7 @@ def _of_fit(explanation: Explanation, validation: HeldOut, remainder: Remainder)
         "remainder_share": remainder.share,
         "remainder_size": math.log1p(remainder.size),
         "structure": math.log1p(remainder.size * math.sqrt(depending)),
-        "transfer": min(max(math.log(max(validation.after, 1e-300) / left), 0.0), 3.0),
+        "transfer": min(max(math.log(max(validation.after, 1e-300) / left), 0.0), MOST_TRANSFER),
     }
 
 

@@ -18,6 +18,12 @@ from .problem import law_start, with_readings
 
 FloatArray = NDArray[np.float64]
 
+PREDICTED_SIZES = (0.03, 0.1, 0.3, 1.0, 3.0, 10.0)
+"""Sizes of a candidate at which its gain is predicted, as parts of what is left."""
+
+LEAST_START = 0.02
+"""Part of a drawn strength from which a candidate starts that explains nothing of what is left."""
+
 
 def _beside(slopes: FloatArray, variance: float) -> Callable[[FloatArray], FloatArray]:
     """Return the function that takes out of columns (m,) or (m, n) what refitted parameters follow of them.
@@ -62,7 +68,7 @@ def additions(
         if optional in kinds:
             continue
         kinds.add(optional)
-        factor_on = float(size[k] / signature.sizes[k]) if gains[k] > 0.0 else 0.02
+        factor_on = float(size[k] / signature.sizes[k]) if gains[k] > 0.0 else LEAST_START
         scaled = strengthened(effect, values, factor_on)
         found.append(with_readings(signature.name, scaled, dataset))
         if len(kinds) == 2:
@@ -112,7 +118,7 @@ def predicted_gains(signatures: Sequence[Signature], base: Fit, discrepancy: Dis
         values, vectors = np.linalg.eigh(gram)
         values, turned = np.maximum(values, 0.0), vectors.T @ moment
         best = -np.inf
-        for size in (0.03 * left, 0.1 * left, 0.3 * left, left, 3.0 * left, 10.0 * left):
+        for size in (part * left for part in PREDICTED_SIZES):
             z = size * turned / (values * size**2 + variance)
             power = base.beyond_drift - 2.0 * size * float(z @ turned) + size**2 * float(z @ (values * z))
             after, new = discrepancy.profile(power)

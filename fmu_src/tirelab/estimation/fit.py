@@ -39,6 +39,9 @@ that, one is taken that leaves less than half; two sets that are told apart by n
 OPTIONAL_GAIN = 60.0
 """Largest gain in log likelihood expected from optional parameters."""
 
+SETTLED = (0.7, 1.5)
+"""Ratio of the new V to that of a fit between which it is not repeated for it; the law's scales stay within a half."""
+
 ROUNDS = 20
 LEAST_GAIN = 0.2
 """Most rounds of a fit, and the gain (twice a log likelihood) of a round below which it ends."""
@@ -224,7 +227,9 @@ def _optimise(problem: EstimationProblem, start: Values, discrepancy: Discrepanc
         if best is None or fit.log_likelihood > best.log_likelihood:
             best = fit
         width = _scales(problem, fit.law_scales, 1.0) * problem.widths(found.positions)
-        if 0.7 < fit.variance / objective.variance < 1.5 and np.allclose(width, objective.width, rtol=0.5):
+        if SETTLED[0] < fit.variance / objective.variance < SETTLED[1] and np.allclose(
+            width, objective.width, rtol=0.5
+        ):
             break
         objective = replace(objective, variance=fit.variance, width=width)
     assert best is not None

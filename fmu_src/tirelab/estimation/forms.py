@@ -24,6 +24,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ..preprocessing.noise import STILL
 from ..preprocessing.turns import branches
 from ..regressors.dataset import Dataset
 from ..regressors.signature import HEIGHTS, LAW, form_error, size_of
@@ -43,7 +44,7 @@ def smooth_functions(dataset: Dataset) -> FloatArray:
     time = dataset.gathered([(e.time - e.time[0]) / max(e.time[-1] - e.time[0], 1e-300) for e in many])
     radius = dataset.gathered([e.surface_radius for e in many])
     depth = (x - x.min()) / max(float(np.ptp(x)), 1e-300)
-    speed = np.log(np.maximum(np.abs(rate) / dataset.scales.rate, 1e-2))
+    speed = np.log(np.maximum(np.abs(rate) / dataset.scales.rate, STILL))
     since_turn = dataset.gathered([_since_turn(e.deflection, e.gauge) for e in many]) / max(
         float(np.ptp(x)), 1e-300
     )

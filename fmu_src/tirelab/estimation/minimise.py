@@ -28,8 +28,9 @@ TRUSTED = 0.5
 TRIES = 8
 """Number of dampings tried before a step is given up."""
 
-DAMPING = (1e-3, 1e-7, 1e7)
-"""Damping factor: first, smallest and largest."""
+DAMPING, DAMPED = (1e-3, 1e-7, 1e7), 10.0
+"""Damping factor: first, smallest and largest; and by how much a step changes it (D. W. Marquardt, J. SIAM 11 (1963)
+431)."""
 
 
 @dataclass(frozen=True)
@@ -96,9 +97,9 @@ def minimise(objective: Objective, start: Iterate, rounds: int, enough: float) -
             new = objective.cost(left, trial)
             evaluations += 1
             if new < cost:
-                damping = max(damping / 10.0, DAMPING[1])
+                damping = max(damping / DAMPED, DAMPING[1])
                 break
-            damping = min(10.0 * damping, DAMPING[2])
+            damping = min(DAMPED * damping, DAMPING[2])
         moved, small = new < cost, cost - new < enough
         if moved:
             predicted = residual + slopes @ step

@@ -52,6 +52,10 @@ MOST_OF_FACTOR = math.log(1000.0)
 """Largest logarithm of a factor on the believed law: a thousand, as between newtons and kilonewtons. A spring that is
 believed and is not there has to go; what is left of it another effect would take away."""
 
+FARTHEST = 12.0
+"""Distance, in standard deviations of its prior, down to which the logarithm of a value goes that may be 0: of a normal
+law less than 1e-32 lies beyond it."""
+
 KINKS = RAMPS.shape[1]
 """Number of kinks of a refitted law."""
 
@@ -163,7 +167,7 @@ def _free(name: str, index: int, p: Parameter, scales: Scales) -> FreeParameter:
     centre, spread, logarithm = centre_and_spread(p, scales)
     low, high = p.minimum, p.maximum
     if logarithm:
-        low = math.log(low) if low > 0.0 else centre - 12.0 * spread
+        low = math.log(low) if low > 0.0 else centre - FARTHEST * spread
         high = math.log(high)
     low, high = (low - centre) / spread, (high - centre) / spread
     if p.role == "form":

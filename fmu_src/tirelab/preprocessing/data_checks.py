@@ -21,7 +21,7 @@ from .driven import FEWEST_EVENTS
 from .gauge import deflection_noise
 from .levels import white_level
 from .motion import motion_of
-from .noise import STANDS_OUT
+from .noise import NEGLIGIBLE, STANDS_OUT
 from .samples import RawDataset, Recorded, is_timed
 
 FloatArray = NDArray[np.float64]
@@ -89,12 +89,13 @@ def check_signal(
     """
     for record, name, level in zip(dataset.experiments, names, levels, strict=True):
         motion = record.motion
-        travel = float(np.sqrt(np.mean(_steps_in_motion(motion.deflection) ** 2)))
-        if motion.noise > 0.3 * float(np.std(motion.deflection)):
+        # Readings that have nothing to do with each other differ by the root of two of their deviation.
+        unrelated = MAJORITY * float(np.sqrt(2.0) * np.std(motion.deflection))
+        if np.sqrt(2.0) * motion.noise > unrelated:
             raise PoorRecording(
                 f"the deflection of recording {name} is noise only; check that the displacement sensor was connected"
             )
-        if travel > 0.7 * float(np.std(motion.deflection)):
+        if float(np.sqrt(np.mean(_steps_in_motion(motion.deflection) ** 2))) > unrelated:
             raise PoorRecording(
                 f"recording {name} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
             )
@@ -112,7 +113,7 @@ def check_signal(
                 "rate and acceleration together); check channels and units"
             )
         varies = float(np.std(record.force))
-        if level > 0.9 * varies > 0.0:
+        if level**2 > (1.0 - NEGLIGIBLE) * varies**2 > 0.0:
             raise PoorRecording(
                 f"the force of recording {name} varies by {plain(varies, 3)} N, hardly more than the noise of its "
                 f"readings ({plain(level, 3)} N, the deflection's through the stiffness with it); check the units, "
@@ -150,8 +151,9 @@ MAJORITY = 0.5
 in which the gauge is found at the end of its travel, of a remainder's samples whose values are there again, of the
 distance between a set and the mean of all, of the way to a peak in its last step."""
 
-ONWARDS = 0.5
-"""Rate of the force in the first fifth of a stay over that before it: halfway between going on (1) and stopping (0)."""
+ONWARDS, PARTS_OF_STAY = 0.5, 5
+"""Rate of the force in the first of so many parts of a stay over that before it: halfway between going on (1) and
+stopping (0)."""
 
 FOLLOWED = 0.01
 """Significance level at which a reading near its largest value bends like a reversal, so that the gauge follows."""
@@ -301,15 +303,15 @@ def _stopped(x: FloatArray, force: FloatArray) -> BoolArray:
         return np.zeros(x.size, dtype=bool)
     for stay in stays:
         begin, end = int(stay[0]), int(stay[-1]) + 1
-        own, fifth = force[begin:end], (end - begin) // 5
-        if own.size < FEWEST_EVENTS or begin < fifth:
+        own, first = force[begin:end], (end - begin) // PARTS_OF_STAY
+        if own.size < FEWEST_EVENTS or begin < first:
             continue
         ends = float(max(own[0], own[-1]))
         rise = float(own.max()) - ends
-        before = float(own[0] - force[begin - fifth]) / max(float(x[begin] - x[begin - fifth]), 1e-300)
-        steepest = max(stiffness, before if fifth else 0.0)
+        before = float(own[0] - force[begin - first]) / max(float(x[begin] - x[begin - first]), 1e-300)
+        steepest = max(stiffness, before if first else 0.0)
         allowed = BEYOND * steepest * max(band, finest, float(np.ptp(x[begin:end]))) + STANDS_OUT * noise
-        onwards = own[fifth] - own[0] > ONWARDS * (own[0] - force[begin - fifth]) > 0.0
+        onwards = own[first] - own[0] > ONWARDS * (own[0] - force[begin - first]) > 0.0
         stopped.append(bool(rise > allowed and onwards and np.mean(own > ends + 0.5 * rise) > BROAD))
     # A gauge stops each time; what else moves the force may do so now and then.
     return near if stopped and np.mean(stopped) >= MAJORITY else np.zeros(x.size, dtype=bool)

@@ -116,6 +116,9 @@ STEPPING, LEVELS = 0.3, 5
 part of the changes with no change before or after, and the part of them that stand in no ramp; LEVELS is the number of
 different jumps that may replace the latter two."""
 
+ON_GRID = 0.9
+"""Part of the changes of a gauge in steps, of ten between two turns, that are whole steps: the last may be a part."""
+
 CANDIDATES = (0.02, 0.1, 0.25, 0.5)
 """Quantiles of the changes of the reading that are tried as its step: the smallest ones are often parts of it."""
 
@@ -133,7 +136,7 @@ def staircase_step(deflection: FloatArray) -> float:
     # A tire that rests repeats its reading too, but only a converter's levels lie on a grid.
     for step in sorted(np.quantile(moved, CANDIDATES, method="lower"), reverse=True):
         multiples = np.round(moved / step)
-        if float(np.quantile(np.abs(moved / step - multiples), 0.9)) < GRID_TOLERANCE:
+        if float(np.quantile(np.abs(moved / step - multiples), ON_GRID)) < GRID_TOLERANCE:
             # Ramps between holds change by one length too, sample after sample, where a staircase rests in between.
             stays = rests >= STEPPING and not between_holds
             kept = (stays or np.unique(multiples).size >= LEVELS) and _on_grid(deflection, step)
@@ -171,7 +174,7 @@ def _on_grid(deflection: FloatArray, step: float) -> bool:
     begins = np.append(0, np.flatnonzero(np.diff(np.sign(changes))) + 1)
     middles = (begins + np.append(begins[1:], stays.size - 1)) // 2
     own = np.searchsorted(begins, np.arange(stays.size), side="right") - 1
-    return float(np.quantile(np.abs(apart - apart[middles[own]]), 0.9)) < GRID_TOLERANCE
+    return float(np.quantile(np.abs(apart - apart[middles[own]]), ON_GRID)) < GRID_TOLERANCE
 
 
 def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArray:
@@ -180,7 +183,7 @@ def destepped(time: FloatArray, deflection: FloatArray, step: float) -> FloatArr
     A line is followed for half a step at most: a tire at rest between two levels does not move slowly from one to the
     other. Where the reading goes to and fro between two levels more than once, the tire rests between them.
     """
-    edges = np.flatnonzero(np.abs(np.diff(deflection)) > 0.25 * step) + 1
+    edges = np.flatnonzero(np.abs(np.diff(deflection)) > GRID_TOLERANCE * step) + 1
     begin, end = np.append(0, edges), np.append(edges, deflection.size)
     middle, level = 0.5 * (time[begin] + time[end - 1]), deflection[begin].copy()
     back = np.zeros(level.size, dtype=bool)

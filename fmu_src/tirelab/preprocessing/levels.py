@@ -38,6 +38,9 @@ OF_THIRD = float(np.sqrt(20.0))
 """Standard deviation of third differences of white noise of standard deviation 1: the squared weights 1 + 9 + 9 + 1."""
 
 
+FEWEST_READINGS = 8
+"""Fewest readings of which third differences, five then, tell a level."""
+
 FEWEST_IN_STATE = 5 * FEWEST_LAGS
 STATE_LAGS = (1, 2, 4, 8, 16)
 """Fewest samples at rest, or moving, whose noise is then known to a tenth, and the lags over which it has to stay."""
@@ -45,7 +48,11 @@ STATE_LAGS = (1, 2, 4, 8, 16)
 
 def white_level(residual: FloatArray) -> float:
     """Return the standard deviation of the part of a residual (n,) that is white, from its third differences."""
-    return _level(_third_differences(residual, 1)) if residual.size >= 8 else float(np.std(residual))
+    return (
+        _level(_third_differences(residual, 1))
+        if residual.size >= FEWEST_READINGS
+        else float(np.std(residual))
+    )
 
 
 def local_rms(values: FloatArray, lag: int, seen: BoolArray) -> float:

@@ -56,7 +56,7 @@ IntArray = NDArray[np.intp]
 
 
 STILL = 0.02
-"""Speed over its root mean square, or its largest, below which the tire rests."""
+"""Speed over its root mean square, or its largest, below which the tire rests; way over the span that is no stroke."""
 
 NEGLIGIBLE = 0.05
 """Part of a whole that does not count: of the samples, of a variance, of a noise's size, of a prior; a chance."""

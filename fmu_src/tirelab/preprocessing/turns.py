@@ -5,17 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .noise import STANDS_OUT, STILL
+
 FloatArray = NDArray[np.float64]
 
 
 def branches(deflection: FloatArray, noise: float, span: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Return direction (n,), +1 or -1, and number of the cycle (n,) of a deflection (n,) [m] with this noise [m].
 
-    A reversal counts if the deflection then goes back by more than six times the noise and a fiftieth of its span, or
+    A reversal counts if the deflection then goes back by more than noise does (STANDS_OUT) and by STILL of its span, or
     of another `span` [m] that is longer; it counts from its turning point on. What first goes down has not gone up.
     A single reading away from a rest is no motion.
     """
-    threshold = max(6.0 * noise, 0.02 * max(float(np.ptp(deflection)), span))
+    threshold = max(STANDS_OUT * noise, STILL * max(float(np.ptp(deflection)), span))
     values = _at_rest(deflection, threshold).tolist()
     turns, sign, best, extreme = [0], 1.0, 0, values[0]
     for i, x in enumerate(values):

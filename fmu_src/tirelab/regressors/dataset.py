@@ -65,6 +65,9 @@ BLOCKS = 4000
 MOST_BLOCKS = 40_000
 """Budget: most blocks of all recordings together, even if the motion needs shorter ones."""
 
+LARGEST = 0.999
+"""Quantile of the sizes of all forces that is their scale: a single false reading is no load."""
+
 STEPS_LEFT = 0.3
 """Part of a gauge's steps that remains in the deflection after the steps are removed; averaging does not reduce it,
 because it is smooth over a step."""
@@ -275,7 +278,7 @@ def _scales(experiments: Sequence[Experiment], recordings: Sequence[Recorded], b
     force = np.concatenate([np.abs(r.force - zero_of(baseline)) for r in recordings])
     deflection = np.concatenate([own_deflection(baseline, e) for e in experiments])
     return Scales(
-        force=max(float(np.quantile(force, 0.999)), 1e-12),
+        force=max(float(np.quantile(force, LARGEST)), 1e-12),
         travel=max(float(np.ptp(deflection)), 1e-9),
         duration=max(float(r.time[-1] - r.time[0]) for r in recordings),
         interval=min(float(np.median(np.diff(r.time))) for r in recordings),

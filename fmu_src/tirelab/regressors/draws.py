@@ -17,7 +17,15 @@ FloatArray = NDArray[np.float64]
 
 
 LEAST_MASS = 1e-3
-"""Part of a prior within the parameter's bounds below which the value is taken at the nearer bound."""
+"""Part of a prior within the parameter's bounds below which the value is taken at the nearer bound; and beyond the
+first and the last draw."""
+
+LEAST_DRAWN, MOST_OF_LOAD = 0.1, 0.3
+"""Smallest size of the drawn responses, as a part of the misfit; the largest is the whole misfit, or this part of the
+load. The shape of a nonlinear response depends on its size."""
+
+SIZED, OVERSIZED = 2.5, 30.0
+"""Factor to within which a strength is adjusted for a wanted size, and that beyond which a response is not drawn."""
 
 
 def centre_and_spread(parameter: Parameter, scales: Scales) -> tuple[float, float, bool]:
@@ -59,7 +67,7 @@ def drawn(effect: Effect, scales: Scales, count: int) -> tuple[list[list[float]]
     """
     names = effect.parameters
     shares = qmc.Sobol(len(names) + 1, seed=1).random(count)
-    shares = np.clip(shares, 1e-3, 1.0 - 1e-3)
+    shares = np.clip(shares, LEAST_MASS, 1.0 - LEAST_MASS)
     sets = [
         [_one(p, float(row[i]), scales, plain=k < count // 2) for i, p in enumerate(names)]
         for k, row in enumerate(shares)
@@ -73,6 +81,11 @@ def _one(parameter: Parameter, share: float, scales: Scales, *, plain: bool) -> 
     if parameter.prior is None or (parameter.optional and plain):
         return parameter.start
     return quantile(parameter, share, scales)
+
+
+def strength_of(effect: Effect, values: Sequence[float]) -> float:
+    """Return the first strength among an effect's values, 1 where it has none."""
+    return next((v for p, v in zip(effect.parameters, values, strict=True) if p.role == "strength"), 1.0)
 
 
 def strengthened(effect: Effect, values: Sequence[float], factor: float) -> list[float]:

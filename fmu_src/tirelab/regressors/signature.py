@@ -31,7 +31,17 @@ from ..names import REFITTED_LAW
 from ..preprocessing.samples import MOST_SURFACES, surface_numbers
 from ..simulation.simulate import UPSTREAM, beyond_zero
 from .dataset import Dataset, Experiment, arranged, own_deflection
-from .draws import at_reading, centre_and_spread, drawn, strengthened
+from .draws import (
+    LEAST_DRAWN,
+    MOST_OF_LOAD,
+    OVERSIZED,
+    SIZED,
+    at_reading,
+    centre_and_spread,
+    drawn,
+    strength_of,
+    strengthened,
+)
 
 FloatArray = NDArray[np.float64]
 
@@ -177,10 +187,6 @@ ALIKE = float(np.sqrt(AS_GOOD))
 FEWEST = 6
 """Fewest draws with a response; with fewer, the recordings cannot show the effect."""
 
-LEAST_DRAWN = 0.1
-"""Smallest size of the drawn responses, as a part of the misfit; the largest is the whole misfit. The shape of a
-nonlinear response depends on its size."""
-
 SILENT = 1e-7
 """A response below this part of the baseline force counts as none."""
 
@@ -302,12 +308,12 @@ def signature_of(name: str, dataset: Dataset, beside: Beside | None = None) -> S
     values: list[tuple[float, ...]] = []
     sizes: list[float] = []
     for chosen, share in zip(sets, shares, strict=True):
-        wanted = min(misfit * LEAST_DRAWN ** (1.0 - share), 0.3 * force)
+        wanted = min(misfit * LEAST_DRAWN ** (1.0 - share), MOST_OF_LOAD * force)
         curve, scaled = _sized(effect, chosen, dataset, beside, wanted)
         size = size_of(curve) if curve.size else 0.0
-        if not SILENT * force < size < 30.0 * max(misfit, wanted):
+        if not SILENT * force < size < OVERSIZED * max(misfit, wanted):
             continue
-        sign = -1.0 if effect.signed and _strength(effect, scaled) < 0.0 else 1.0
+        sign = -1.0 if effect.signed and strength_of(effect, scaled) < 0.0 else 1.0
         curves.append(sign * curve / size)
         values.append(tuple(scaled))
         sizes.append(sign * size)
@@ -327,9 +333,7 @@ def signatures_of(names: Sequence[str], dataset: Dataset) -> tuple[Signature, ..
 
 
 def drawn_beside(signature: Signature, dataset: Dataset, beside: Beside) -> Signature:
-    """Return the signature of the same effect beside another tire: the same one where most draws have the same response
-    (ALIKE).
-    """
+    """Return the signature beside another tire: the same one where most draws have the same response (ALIKE)."""
     if signature.silent or likeness(signature, dataset, beside) < ALIKE:
         return signature_of(signature.name, dataset, beside)
     return signature
@@ -349,10 +353,6 @@ def likeness(signature: Signature, dataset: Dataset, beside: Beside) -> float:
     return 1.0 if np.isnan(found) else found
 
 
-def _strength(effect: Effect, values: Sequence[float]) -> float:
-    return next((v for p, v in zip(effect.parameters, values, strict=True) if p.role == "strength"), 1.0)
-
-
 def _sized(
     effect: Effect, values: list[float], dataset: Dataset, beside: Beside, wanted: float
 ) -> tuple[FloatArray, list[float]]:
@@ -364,7 +364,7 @@ def _sized(
         size = size_of(curve)
         if not np.isfinite(size):
             return np.zeros(0), values
-        if not adjustable or size <= 0.0 or 0.4 < size / wanted < 2.5:
+        if not adjustable or size <= 0.0 or 1.0 / SIZED < size / wanted < SIZED:
             break
         values = strengthened(effect, tried, wanted / size)
     return curve, tried

@@ -42,9 +42,10 @@ from ..regressors.signature import LAW, Signature, candidates, form_error
 FloatArray = NDArray[np.float64]
 
 
-EFFECTIVE = 30.0
+EFFECTIVE, FEWEST_EACH = 30.0, 3.0
 """Effective samples of a discrepancy. By its autocorrelation, the residual of recorded dampers has 30 to 60 of them,
-that of pistons 100 to 200; with more than 30, larger sets often win over simpler ones."""
+that of pistons 100 to 200; with more than 30, larger sets often win over simpler ones. And the
+fewest samples for each: the noise beside it needs some."""
 
 LIKE_NOISE = 1.0
 """Root mean square of a discrepancy, in units of the noise, up to which the forms of a set count as exact."""
@@ -83,9 +84,7 @@ class Discrepancy:
         return min(self.exact, self.usual)
 
     def terms_of(self, variance: FloatArray) -> FloatArray:
-        """Return the terms of the log likelihood other than -q / 2V, for several V, with the penalty of V below the
-        usual.
-        """
+        """Return the terms of the log likelihood but -q / 2V, for several V, with the penalty below the usual."""
         e = self.effective
         flat = 0.5 * (self.samples - e) / variance - 0.5 * e * np.log(variance)
         missed = np.minimum(variance, self.usual) - 1.0
@@ -169,7 +168,7 @@ def slow_variance(residuals: Sequence[FloatArray], effective: float, freedom: fl
 
 def beside_noise(samples: int) -> Discrepancy:
     """Return the discrepancy over so many samples of noise, without form errors: see `Discrepancy.above`."""
-    effective = min(EFFECTIVE, samples / 3.0)
+    effective = min(EFFECTIVE, samples / FEWEST_EACH)
     return Discrepancy(samples, effective, 1.0, math.inf, 1.0 + LIKE_NOISE**2 * samples / effective)
 
 
@@ -189,8 +188,8 @@ def usual_form_error(tire: TireModel) -> float:
     return float(np.sqrt(np.mean([form_error(name, tire) ** 2 for name in (LAW, *candidates())])))
 
 
-SIZES = (0.03, 0.1, 0.3, 1.0, 3.0)
-"""Sizes of a candidate that are tried first, as parts of the misfit."""
+SIZES, STARTS = (0.03, 0.1, 0.3, 1.0, 3.0), (1.0, 8.0, 64.0)
+"""Sizes of a candidate that are tried first, as parts of the misfit, and divisors of V: a larger set leaves less."""
 
 ITERATIONS = 12
 """Most iterations in the maximisation of a set's marginal likelihood."""
@@ -266,13 +265,13 @@ def evidence_of(
         best = int(np.argmax(likelihoods))
         return Evidence((), float(likelihoods[best]), (), float(discrepancy.grid[best]))
     unit = math.sqrt(equations.power / discrepancy.samples)
-    begin = start.variance if start is not None else 0.25 * discrepancy.highest
+    begin = start.variance if start is not None else discrepancy.highest / 4.0
     tries = []
     new = [n for n in names if n not in known]
     signs_of = [(1.0, -1.0) if equations.signed[n] and n in new else (1.0,) for n in names]
     for part, signs in itertools.product(SIZES if new else (1.0,), itertools.product(*signs_of)):
         chosen = [known.get(n, part * unit * sign) for n, sign in zip(names, signs, strict=True)]
-        tries += [(chosen, max(begin / f, discrepancy.usual)) for f in (1.0, 8.0, 64.0)]
+        tries += [(chosen, max(begin / f, discrepancy.usual)) for f in STARTS]
     likelihoods = [_likelihood(names, s, v, equations, discrepancy)[0] for s, v in tries]
     best = int(np.argmax(likelihoods))
     sizes, variance = tries[best]
