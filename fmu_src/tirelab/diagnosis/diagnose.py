@@ -22,7 +22,7 @@ from ..preprocessing.data_checks import (
     PoorRecording,
     check_recordings,
     check_signal,
-    copies_held_out,
+    copies_told,
     not_compared,
     outliers_told,
 )
@@ -291,7 +291,7 @@ def _sentences(
     test: DiscriminatingTest | None,
 ) -> list[str]:
     """Return the verdict in sentences, before those on samples that were left out."""
-    told = copies_held_out(data.fitted, data.kept)
+    told = copies_told(data.fitted, data.kept)
     told += [] if judged.contradiction is None else [judged.contradiction.sentences]
     fit, baseline, of_found = judged.fit, data.baseline, (judged.effects, judged.alternatives, left.models)
     told.append(summarise(*of_found, judged.confidence, fit, test))

@@ -48,7 +48,6 @@ from .request_checks import (
     check_depth,
     check_folder,
     check_once,
-    copies_told,
     pulls_told,
     without_time,
 )
@@ -146,7 +145,7 @@ def run_request(asked: Request, progress: Progress | None = None) -> DiagnosisRu
         found = _Found(verdict, fitted, kept, believed)
         content, warnings = _delivered(folder, found, origin, report, asked.samples)
     _remove_outdated(asked, found)
-    notes = [*baseline_notes, *read.skipped, *copies_told(read.fitted, read.kept)]
+    notes = [*baseline_notes, *read.skipped]
     notes += [f"{r.name}: {note}" for r in (*fitted, *kept) for note in r.notes]
     return DiagnosisRun(verdict, content, tuple(notes), tuple(warnings))
 

@@ -2,7 +2,7 @@
 readings that are held out again, a motion that no tire can follow, a folder that cannot be written.
 
 Each check raises TirelabError with one sentence and returns nothing. What a request cannot show is told, not refused:
-copies of a recording, times that were made up, deflections that only held-out recordings reach, a tire that pulls.
+times that were made up, deflections that only held-out recordings reach, a tire that pulls.
 """
 
 from __future__ import annotations
@@ -12,17 +12,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import polars as pl
-from numpy.typing import NDArray
 from radialtire import TireModel
 from radialtire.model import DEFLECTION_HIGHEST
 
 from ..errors import TirelabError
 from ..names import plain
-from ..preprocessing.data_checks import MAJORITY
-from ..preprocessing.driven import FEWEST_EVENTS
 from ..preprocessing.noise import NEGLIGIBLE
-from ..preprocessing.samples import Recorded, surface_numbers, within
+from ..preprocessing.samples import surface_numbers, within
 from ..recordings.pieces import split_piece
 from ..recordings.pulling import pull_of
 from ..recordings.recording import Recording
@@ -59,35 +55,6 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
                     f"{other_file} and {file} share {shared}; give each part of a file once "
                     "(a range includes both ends)"
                 )
-
-
-def copies_told(fitted: Sequence[Recording], kept: Sequence[Recording]) -> tuple[str, ...]:
-    """Return a sentence on each recording most of whose readings are those of one before it: a copy, or another export
-    of the same test.
-    """
-    told, read = [], (*fitted, *kept)
-    runs = [_runs(recording) for recording in read] if len(read) > 1 else []
-    for i, (one, own) in enumerate(zip(read, runs, strict=False)):
-        pairs = zip(read[:i], runs, strict=False)
-        other = next((r for r, others in pairs if np.isin(own, others).mean() > MAJORITY), None)
-        if other is not None:
-            tested = "a correction fitted to the one is not tested on the other"
-            told.append(
-                f"most readings of {one.name} are those of {other.name}, as in a copy or another export of one test: "
-                + ("they count twice" if i < len(fitted) else tested)
-            )
-    return tuple(told)
-
-
-def _runs(recording: Recorded) -> NDArray[np.uint64]:
-    """Return a hash of each FEWEST_EVENTS readings in a row, to the digits that all units leave: single readings of
-    coarse gauges are alike by chance.
-    """
-    readings = (
-        np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
-    )
-    last = max(readings.size - FEWEST_EVENTS + 1, 0)
-    return pl.DataFrame([readings[k:][:last] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()
 
 
 def without_time(recordings: Sequence[Recording]) -> list[str]:

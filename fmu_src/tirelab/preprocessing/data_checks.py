@@ -1,4 +1,4 @@
-"""Recordings that are too short or too poor to be diagnosed, and samples that are not compared.
+"""Recordings that are too short or too poor to be diagnosed, copies of others, and samples that are not compared.
 
 After a pause of the recording the rate is not known for some samples. A gauge is at the end of its travel where its
 reading stands at its largest (or smallest) value while the force goes on rising as before and falls again, by more than
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import polars as pl
 from numpy.typing import NDArray
 from radialtire.tracking import PAUSE
 from scipy.ndimage import maximum_filter1d, median_filter
@@ -339,15 +340,30 @@ def _turns(stays: Sequence[FloatArray]) -> bool:
     return bool(t.cdf(bent / np.sqrt(straight * beside), max(freedom - 1.0, 1.0)) < FOLLOWED)
 
 
-def copies_held_out(fitted: Sequence[Recorded], held_out: Sequence[Recorded]) -> list[str]:
-    """Return a sentence on each held-out recording that is one of the fitted ones."""
-    told = []
-    for kept in held_out:
-        own = kept.time, kept.deflection, kept.force
-        same = (r for r in fitted if all(map(np.array_equal, own, (r.time, r.deflection, r.force))))
-        if (copied := next(same, None)) is not None:
+def copies_told(fitted: Sequence[Recorded], held_out: Sequence[Recorded]) -> list[str]:
+    """Return a sentence on each recording most of whose readings are those of one before it: a copy, or another export
+    of the same test.
+    """
+    told, read = [], (*fitted, *held_out)
+    runs = [_runs(recording) for recording in read] if len(read) > 1 else []
+    for i, (one, own) in enumerate(zip(read, runs, strict=False)):
+        pairs = zip(read[:i], runs, strict=False)
+        other = next((r for r, others in pairs if np.isin(own, others).mean() > MAJORITY), None)
+        if other is not None:
+            tested = f"it tests nothing that is fitted to {other.name}; hold out another recording"
             told.append(
-                f"Held-out {kept.name} has the readings of {copied.name}, which is fitted: it tests nothing; hold out "
-                "another recording."
+                f"Most readings of {one.name} are those of {other.name}, as in a copy or another export of one test: "
+                f"{'they count twice' if i < len(fitted) else tested}."
             )
     return told
+
+
+def _runs(recording: Recorded) -> NDArray[np.uint64]:
+    """Return a hash of each FEWEST_EVENTS readings in a row, to the digits that all units leave: single readings of
+    coarse gauges are alike by chance.
+    """
+    readings = (
+        np.column_stack([recording.deflection, recording.force]).astype(np.float32).view(np.uint64).ravel()
+    )
+    last = max(readings.size - FEWEST_EVENTS + 1, 0)
+    return pl.DataFrame([readings[k:][:last] for k in range(FEWEST_EVENTS)]).hash_rows().to_numpy()

@@ -14,13 +14,10 @@ from tirelab.diagnosis.request_checks import (
     check_depth,
     check_folder,
     check_once,
-    copies_told,
     pulls_told,
 )
 from tirelab.errors import TirelabError
 from tirelab.recordings.recording import Recording
-
-COLUMNS = ("time", "deflection", "surface_radius", "force")
 
 
 def part(begin: float, end: float, deepest: float = 0.01, source: Path | None = None) -> Recording:
@@ -50,27 +47,6 @@ def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None
         TirelabError, match=r"share 1 sample; give each part of a file once \(a range includes both ends\)"
     ):
         check_apart([(first, one), (second, other)])
-
-
-def coarse(name: str, seed: int) -> Recording:
-    """A press to 10 mm read in steps of 0.1 mm and 1 N, so that most pairs of readings come again in any other."""
-    time = np.linspace(0.0, 20.0, 2000)
-    x = np.round(0.005 * (1.0 - np.cos(time)), 4)
-    force = np.round(2000.0 * x + np.random.default_rng(seed).normal(size=2000))
-    return Recording(name, time, x, np.full(2000, np.inf), force)
-
-
-def test_copies_and_exports_of_one_test_are_told() -> None:
-    first, second = coarse("first", 1), coarse("second", 2)
-    inches = replace(first, name="export", deflection=first.deflection / 0.0254 * 0.0254)
-    later = replace(first, name="cut", **{c: getattr(first, c)[300:] for c in COLUMNS})
-    assert not copies_told([first, second], [coarse("third", 3)])
-    (fitted,) = copies_told([first, inches], [second])
-    assert fitted.endswith("they count twice")
-    assert "most readings of export are those of first" in fitted
-    (kept,) = copies_told([first, second], [later])
-    assert "most readings of cut are those of first" in kept
-    assert kept.endswith("a correction fitted to the one is not tested on the other")
 
 
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:

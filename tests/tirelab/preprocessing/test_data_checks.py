@@ -1,4 +1,4 @@
-"""Recordings that cannot be diagnosed are refused with the reason; the least that can is not.
+"""Recordings that cannot be diagnosed are refused with the reason; the least that can is not. Copies are told.
 
 A gauge at the end of its travel is seen, and a hold, a ring or a quick peak is not taken for one.
 """
@@ -23,6 +23,7 @@ from tirelab.preprocessing.data_checks import (
     check_recordings,
     check_signal,
     compared,
+    copies_told,
     not_compared,
     outliers_told,
     spikes,
@@ -352,3 +353,25 @@ def test_a_peak_of_several_samples_is_no_outlier_and_two_near_ones_are() -> None
 def test_what_stands_out_often_is_noise_of_its_own() -> None:
     often = with_lone(**{f"at_{place}": 40.0 for place in range(5, 1000, 10)})
     assert not spikes(often).any()
+
+
+def coarse(name: str, seed: int) -> Recording:
+    """A press to 10 mm read in steps of 0.1 mm and 1 N, so that most pairs of readings come again in any other."""
+    time = np.linspace(0.0, 20.0, 2000)
+    x = np.round(0.005 * (1.0 - np.cos(time)), 4)
+    force = np.round(2000.0 * x + np.random.default_rng(seed).normal(size=2000))
+    return Recording(name, time, x, np.full(2000, np.inf), force)
+
+
+def test_copies_and_exports_of_one_test_are_told() -> None:
+    first, second = coarse("first", 1), coarse("second", 2)
+    columns = ("time", "deflection", "surface_radius", "force")
+    inches = replace(first, name="export", deflection=first.deflection / 0.0254 * 0.0254)
+    later = replace(first, name="cut", **{c: getattr(first, c)[300:] for c in columns})
+    assert not copies_told([first, second], [coarse("third", 3)])
+    (fitted,) = copies_told([first, inches], [second])
+    assert fitted.endswith("they count twice.")
+    assert "Most readings of export are those of first" in fitted
+    (kept,) = copies_told([first, second], [later])
+    assert "Most readings of cut are those of first" in kept
+    assert kept.endswith("it tests nothing that is fitted to first; hold out another recording.")
