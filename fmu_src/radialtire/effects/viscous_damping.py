@@ -248,12 +248,16 @@ VISCOUS_DAMPING = Effect(
             "u",
             "1",
             1.0,
-            0.1,
-            10.0,
+            1e-3,
+            1e3,
             "damping on the way back over that on the way in",
             optional=True,
             prior=Prior(
-                "log", 1.0, math.log(2), "1", "Dixon 2007: vehicles' dampers have 2 to 3, tires about 1"
+                "log",
+                1.0,
+                math.log(4),
+                "1",
+                "Dixon 2007: vehicles' dampers have 2 to 3, with a check valve none one way",
             ),
         ),
         Parameter(

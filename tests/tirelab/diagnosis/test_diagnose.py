@@ -35,6 +35,19 @@ def test_damping_is_named_and_its_size_found(damped_run):
     )
 
 
+def test_a_damper_with_a_check_valve_acts_one_way_and_nothing_else_is_named():
+    """On the way back alone, as no ratio between the ways does: what is left of one was a late load cell."""
+    time, deflection, rate = ride(5)
+    force = flat_force(deflection) + 2000.0 * np.minimum(rate, 0.0)
+    verdict = diagnose(
+        read("ride", time, deflection, force, 5), catalogue=rivals("viscous_damping", "force_lag")
+    )
+    assert verdict.names == ("viscous_damping",)
+    found = {name: p.value for name, p in verdict.effects[0].parameters.items()}
+    assert found["damping"] * found["rebound"] == pytest.approx(2000.0, rel=0.05)
+    assert found["rebound"] > 20.0
+
+
 def test_the_corrected_tire_has_a_name_of_its_own(alike_verdict):
     assert alike_verdict.names == ("viscous_damping",)
     assert alike_verdict.tire.name == f"{TireModel().name}, corrected"

@@ -103,6 +103,8 @@ def test_a_form_lies_within_three_standard_deviations_of_its_prior_or_where_it_i
     ]
     assert rebound.value(-99.0) == pytest.approx(1.5**-3)
     assert rebound.value(99.0) == pytest.approx(1.5**3)
+    (valve,) = [p for p in parameters_of_effect("viscous_damping", DATASET.scales) if p.label == "rebound"]
+    assert valve.value(99.0) == pytest.approx(64.0)  # what acts the other way too is a percent and a half
 
 
 def test_a_law_on_one_surface_has_no_parameters_of_a_surface_of_its_own() -> None:
