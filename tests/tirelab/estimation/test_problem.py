@@ -107,6 +107,12 @@ def test_a_form_lies_within_three_standard_deviations_of_its_prior_or_where_it_i
     assert valve.value(99.0) == pytest.approx(64.0)  # what acts the other way too is a percent and a half
 
 
+def test_a_gauge_may_be_late_as_behind_a_filter_of_second_order_and_a_few_hertz() -> None:
+    """To the second order Butterworth's of 4 Hz is a delay of sqrt(2) / (2 pi 4 Hz) = 56 ms: what it leaves is a mass."""
+    (delay,) = [p for p in parameters_of_effect("deflection_lag", DATASET.scales) if p.label == "delay"]
+    assert delay.value(99.0) > np.sqrt(2.0) / (8.0 * np.pi)
+
+
 def test_a_law_on_one_surface_has_no_parameters_of_a_surface_of_its_own() -> None:
     one, two = parameters_of_law(1), parameters_of_law(2)
     # Of two surfaces the common part and a surface's own together spread as one part does alone.
