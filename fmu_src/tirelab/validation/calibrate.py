@@ -2,6 +2,7 @@
 
 Run: python -m tirelab.validation.calibrate --seed SEED --trials N --out FILE
      python -m tirelab.validation.calibrate --proof DIR --out FILE
+     python -m tirelab.validation.calibrate --seed SEED --trials N --onto FILE --ground NAME --out FILE
 
 Every trial is drawn, diagnosed and scored, or read from the folder of a finished `tirelab prove`; its grounds
 (`diagnosis.confidence`) and whether it was right are kept. The weights maximise the posterior under independent normal
