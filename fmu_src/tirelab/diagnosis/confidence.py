@@ -166,9 +166,12 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
 
 
 def probability(of: str, grounds: Grounds) -> float:
-    """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds."""
+    """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds; one that the calibration
+    does not know yet counts for nothing.
+    """
     weights = _weights()[of]
-    return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
+    line = weights["constant"] + sum(weights.get(n, 0.0) * g for n, g in grounds.items())
+    return 1.0 / (1.0 + math.exp(-line))
 
 
 def probability_of_effect(name: str, grounds: Grounds) -> float:
