@@ -93,18 +93,19 @@ def _of_equal_tests(
     Errors: SeveralTrials where none is asked for, and all that is needed is there.
     """
     tests = len(headers) // width
-    if trial is not None and not 1 <= trial <= tests:
-        raise no_such_trial(origin, tests)
+    within = trial is None or 1 <= trial <= tests
     numbered = filter(None, (NUMBER.fullmatch(text.strip()) for text in columns.values()))
     numbers = [int(number[1]) for number in numbered]
     if trial is None and numbers and (max(numbers) > width or _complete(origin, headers, columns)):
         return None
-    first = width * ((trial or 1) - 1)
+    first = width * ((trial or 1) - 1) if within else 0
     own = {name: number_within(text, first, width) for name, text in columns.items()}
     try:
         found = _matched(origin, headers[first : first + width], None, own, None)
     except SeveralTrials:
         return None
+    if not within:
+        raise no_such_trial(origin, tests)
     if trial is None and not {"deflection", "force"} & set(found.missing):
         raise SeveralTrials(origin, tests)
     matches = {name: replace(match, index=first + match.index) for name, match in found.columns.items()}

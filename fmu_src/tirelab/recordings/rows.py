@@ -15,6 +15,7 @@ from .held import held_readings
 from .jumps import false_readings, lost_readings, unevenly_read
 from .origin import Origin
 from .rounded_clock import evened
+from .samples import COARSE, GAP
 
 FloatArray = NDArray[np.float64]
 
@@ -26,6 +27,9 @@ NOT_MEASURED = ((9.8e37, 3.5e38), (1.79e308, np.inf))
 
 MOST_NAMED = 12
 """How many rows a note names one by one."""
+
+NEARBY = 5
+"""How many rows before and after one show how much the readings change from row to row there."""
 
 OPTIONAL = tuple(channel.name for channel in CHANNELS if not channel.required and channel.name != "radius")
 """The channels a recording can do without; a sample without its surface is none."""
@@ -75,8 +79,9 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
     """The rows with a value in every required channel; an optional channel with many blanks is left out.
 
     Of equal rows with one time the first is kept, with a note: some machines write the end of a step of a test twice.
-    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them, rows that only
-    repeat a reading which the logger holds, and rows whose deflection was lost.
+    Rows before the clock runs, at the very beginning, are skipped with a note but for the last of them, few rows to
+    which a rounded clock gives the time of the one before, rows that only repeat a reading which the logger holds, and
+    rows whose deflection was lost.
     Errors: RecordingError for no rows, for a single one, or when more than `MOST_BLANK` of them lack a value.
     """
     values = dict(zip(headers, columns.values, strict=True))
@@ -90,7 +95,7 @@ def complete_rows(origin: Origin, headers: Mapping[str, Header], columns: Column
             marks = [(least <= size) & (size < most) for least, most in NOT_MEASURED]
             values[name] = np.where(np.logical_or(*marks), np.nan, column)
     values, kept, notes = _without_blanks(origin, columns, values)
-    for which in (_repeated, _before_the_clock, _held, _lost, _read_falsely):
+    for which in (_repeated, _before_the_clock, _rounded_together, _held, _lost, _read_falsely):
         skipped, said = which(values)
         if len(skipped):
             whole = np.arange(samples) if kept is None else kept
@@ -170,6 +175,32 @@ def _before_the_clock(values: Mapping[str, FloatArray]) -> Skipped:
     if len(still) == 1 and (deflection is None or deflection[0] != deflection[1]):
         return NONE, said
     return (still if np.array_equal(still, np.arange(len(still))) else NONE), said
+
+
+def _rounded_together(values: Mapping[str, FloatArray]) -> Skipped:
+    """Return the rows at the time of the one before that read what comes next in the motion: each gauge changes by no
+    more than from row to row nearby, and no sample is missing after it. None where more than COARSE repeat a time.
+    """
+    said, time = "at the time of the row before, to which the clock is rounded", values.get("time")
+    if time is None or len(time) < 2:
+        return NONE, said
+    found = np.flatnonzero(time[1:] == time[:-1]) + 1
+    if not 0 < len(found) <= COARSE * len(time):
+        return NONE, said
+    moved = [np.abs(np.diff(gauge)) for gauge in _gauges(values) if gauge.size]
+    goes_on = [i for i in found if _goes_on(time[i : i + 3]) and all(_usual(m, i - 1) for m in moved)]
+    return np.array(goes_on, dtype=np.intp), said
+
+
+def _goes_on(time: FloatArray) -> bool:
+    """Whether no sample is missing between the first two of three times."""
+    return len(time) < 3 or bool(time[1] - time[0] <= GAP * (time[2] - time[1]))
+
+
+def _usual(moved: FloatArray, at: int) -> bool:
+    """Whether a change is at most as large as the largest of those nearby."""
+    nearby = np.concatenate([moved[max(at - NEARBY, 0) : at], moved[at + 1 : at + 1 + NEARBY]])
+    return bool(moved[at] <= nearby.max(initial=0.0))
 
 
 def _held(values: Mapping[str, FloatArray]) -> Skipped:

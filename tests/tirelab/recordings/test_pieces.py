@@ -129,9 +129,9 @@ class TestRanges:
 
     def test_a_wrong_sample_is_named_by_its_row_in_the_file(self, tmp_path: Path) -> None:
         time, deflection, force = loading()
-        time[60] = time[59]
+        time[60] = time[58]
         path = write_rows(tmp_path / "a.csv", HOUSE_FORM, time, deflection, [25.4] * 101, force)
-        with pytest.raises(RecordingError, match=r"row 62, column 'time \[s\]': time repeats"):
+        with pytest.raises(RecordingError, match=r"row 62, column 'time \[s\]': time goes back"):
             read_recording(f"{path}@50:")
 
 

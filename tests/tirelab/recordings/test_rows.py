@@ -109,6 +109,17 @@ def test_a_row_written_twice_is_kept_once_and_named() -> None:
     assert rows_of(force=[5.0, 5.0, 6.0]).kept is None
 
 
+@pytest.mark.parametrize(("force", "skipped"), [(49.5, ["row 52"]), (90.0, [])])
+def test_of_two_rows_at_one_rounded_time_the_first_is_kept_where_both_are_of_the_motion(
+    force: float, skipped: list[str]
+) -> None:
+    """A reading that is far from those around it may be a row of another place: which is right is not decided here."""
+    time, deflection, read = (np.insert(np.arange(100.0), 50, own) for own in (49.0, 49.5, force))
+    rows = rows_of(time=time, deflection=deflection, force=read)
+    said = "skipped as at the time of the row before, to which the clock is rounded: "
+    assert rows.notes == tuple(said + row for row in skipped)
+
+
 def test_rows_before_the_clock_runs_are_skipped_and_named() -> None:
     rows = rows_of(time=[0.0, 0.0, 0.0, 0.1, 0.2], force=[5.0, 5.5, 6.0, 7.0, 8.0])
     assert rows.notes == ("skipped as before the clock runs: row 2, row 3",)

@@ -163,6 +163,21 @@ class TestExcel:
         facts = dict(inspect_recording(files[1], Choices(radius="flat")).facts)
         assert facts["table"] == "xlsx, sheet 'Specimen 2', names in row 2"
 
+    def test_sheets_on_each_of_which_several_tests_stand_have_the_tests_of_all(self, tmp_path: Path) -> None:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        book.remove(book.active)
+        for sheet in map(book.create_sheet, ("Day 0", "Day 7")):
+            first = 10.0 if sheet.title == "Day 0" else 30.0
+            sheet.append([f"{name} {n}" for n in (1, 2) for name in ("time [s]", "stroke [mm]", "load [N]")])
+            for i in range(40):
+                sheet.append([v for n in (0.0, 10.0) for v in (0.1 * i, 0.2 * i, (first + n) * i)])
+        book.save(tmp_path / "a.xlsx")
+        files, _ = recording_files([tmp_path / "a.xlsx"])
+        largest = [read_recording(file, radius="flat").force.max() for file in files]
+        assert largest == pytest.approx([390.0, 780.0, 1170.0, 1560.0])
+        assert "has 4 trials side by side" in refusal(tmp_path / "a.xlsx@trial5")
+
     def test_a_column_without_a_name_on_one_of_them_makes_no_difference(self, tmp_path: Path) -> None:
         openpyxl = pytest.importorskip("openpyxl")
         book = openpyxl.Workbook()
