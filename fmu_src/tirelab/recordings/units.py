@@ -263,11 +263,14 @@ def are_apart(unit: str, other: str) -> bool:
 
 
 def is_no_unit(text: str, kinds: Iterable[str] = QUANTITIES) -> bool:
-    """Whether a text is a word, and neither a unit nor one by which another unit is meant: Absolute, filtered, sum.
+    """Whether a text is a word, or several, and neither a unit nor one by which another unit is meant: Absolute, sum,
+    Digital Strain 1.
 
     kinds: the SI units of what it might be a unit of
     """
-    word = text.isalpha() and len(text) > 1 and not is_unit(text)
+    several = [own for own in text.split() if own.isalnum()]
+    words = " ".join(several) == text and any(own.isalpha() and len(own) > 3 for own in several)
+    word = (text.isalpha() or (words and len(several) > 1)) and len(text) > 1 and not is_unit(text)
     return word and not any(meant_unit(text, si) or _likely(text, si) for si in kinds)
 
 

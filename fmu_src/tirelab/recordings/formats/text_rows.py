@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from ..units import is_no_unit
 from .table import BLANK_WORDS, Header, RecordingError, listed, quoted
 from .table_search import bare_unit, is_value, named, states_units
 
@@ -153,14 +154,17 @@ class TextRows:
         return other
 
     def is_header(self, row: Sequence[str]) -> bool:
-        """Whether a row names the same columns in the same order."""
+        """Whether a row names the same columns in the same order; a number among the names is that of a specimen."""
         texts = [" ".join(cell.split()) for cell in row]
         names = [header.text for header in self.headers]
         while texts and not texts[-1]:
             texts.pop()
         while names and names[-1].startswith("#"):
             names.pop()
-        return len(texts) > 1 and texts == names
+        if len(texts) < 2 or len(texts) != len(names):
+            return False
+        pairs = [pair for pair in zip(texts, names, strict=True) if not all(map(str.isdecimal, pair))]
+        return bool(pairs) and all(text == name for text, name in pairs)
 
     def _is_unit_row(self, row: Sequence[str]) -> bool:
         """Whether a row holds the units of the columns, words that are no units among them: sec, segments, mm."""
@@ -177,7 +181,13 @@ class TextRows:
         """Refuse units below a repeated header that are not those of the first."""
         for header, cell in zip(self.headers, row, strict=False):
             unit = bare_unit(cell)
-            if unit and header.unit and not header.dated and unit != header.unit:
+            if (
+                unit
+                and header.unit
+                and not header.dated
+                and unit != header.unit
+                and not is_no_unit(header.unit)
+            ):
                 raise RecordingError(
                     f"{self.file}, row {line}, column {quoted(header.text)}: the unit is {quoted(unit)} here and "
                     f"{quoted(header.unit)} above; read the blocks one by one: {self.file}@{self.begins}:{line - 2}"

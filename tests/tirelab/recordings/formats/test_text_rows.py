@@ -36,6 +36,17 @@ def test_other_units_below_are_refused(tmp_path: Path) -> None:
     assert "the unit is 'N' here and 'kN' above" in said
 
 
+def test_names_with_the_number_of_a_specimen_before_them_are_written_again(tmp_path: Path) -> None:
+    """Bluehill numbers the specimens of a table of results, in the first column; an extensometer is in brackets."""
+    rows = "".join(f",{i / 10:.1f},{0.1 * i:.1f},{5.0 * i:.1f},0.1\n" for i in range(40))
+    head = "{},Time,Extension,Load,Strain (Digital Strain 1)\n,(s),(mm),(N),(%)\n"
+    path = tmp_path / "a.csv"
+    path.write_text(head.format(1) + rows + head.format(2) + rows, encoding="utf-8")
+    assert "time goes back from 3.9 s to 0 s" in refusal(path, radius="flat")
+    second = read_recording(f"{path}@45:84", radius="flat")
+    assert (second.deflection.max(), second.force.max()) == pytest.approx((3.9e-3, 195.0))
+
+
 def test_a_column_with_a_unit_of_time_is_asked_about(tmp_path: Path) -> None:
     names = NAMES.replace("Ch 1 Time", "Acq")
     said = refusal(blocks(tmp_path / "a.txt", f"{names}\n{UNITS}"), radius="flat")
