@@ -200,24 +200,25 @@ def _contradiction(
 
     return (
         contradiction_of(explanation, fitted, data.motions, data.residuals, explain_fitted)
-        or difference_between(explanation, fitted, data.motions, explain_fitted)
-        or _contradicted_by_held_out(data, candidates, explanation)
+        or difference_between(_clearest(candidates, explanation), fitted, data.motions, explain_fitted)
+        or _contradicted_by_held_out(data, _clearest(candidates, explanation))
         or contradicting_channel(explanation, fitted, data.kept, explain)
     )
 
 
-def _contradicted_by_held_out(
-    data: FittedData, candidates: Explanation, chosen: Explanation
-) -> Contradiction | None:
-    """Return the held-out recording that contradicts the set which explains the fitted ones, refused by it or not, or
-    that shows what they do not.
+def _clearest(candidates: Explanation, chosen: Explanation) -> Explanation:
+    """Return the set that explains the fitted recordings, whether the held-out ones refused it or not."""
+    names = candidates.likeliest_fitted
+    likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
+    return likeliest if likeliest.error < EXPLAINED * chosen.error else chosen
+
+
+def _contradicted_by_held_out(data: FittedData, judged: Explanation) -> Contradiction | None:
+    """Return the held-out recording that contradicts the set which explains the fitted ones, or that shows what they do
+    not.
     """
     if not data.kept:
         return None
-    names = candidates.likeliest_fitted
-    likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
-    clearly = likeliest.error < EXPLAINED * chosen.error
-    judged = likeliest if clearly else chosen
     beside = driven(data.fitted, data.kept)
     return contradiction_held_out(judged, data.fitted, beside) or missed_held_out(judged, data.fitted, beside)
 
