@@ -208,7 +208,7 @@ def _headlines(diagnosis: Mapping[str, Any]) -> Iterator[str]:
     if not parts:
         if refitted and _left_over(diagnosis):
             yield "The law is refitted, and more than the noise is left"
-        yield "No physics is missing: the law is refitted" if refitted else "Nothing is missing"
+        yield "No other physics shows: the law is refitted" if refitted else "Nothing is missing"
         return
     law = "; law refitted" if refitted else ""
     if len(parts) == 1:

@@ -18,7 +18,7 @@ from tirelab.report import first_screen
         ({}, {}, "Nothing is missing"),
         ({"rate_independent_hysteresis": 20.0}, {}, "Friction loop, 4 % of the load"),
         ({"rate_independent_hysteresis": None}, {}, "Friction loop"),
-        ({"recalibration": 90.0}, {}, "No physics is missing: the law is refitted"),
+        ({"recalibration": 90.0}, {}, "No other physics shows: the law is refitted"),
         ({"recalibration": 90.0}, {"after": 9.1}, "The law is refitted, and more than the noise is left"),
         (
             {"recalibration": 90.0, "rate_independent_hysteresis": 20.0},

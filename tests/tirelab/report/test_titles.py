@@ -68,7 +68,7 @@ def test_forces_and_confidence() -> None:
     ("names", "unexplained", "alternatives", "told"),
     [
         ([], False, [], "Nothing is missing."),
-        (["recalibration"], False, [], "No physics is missing: the elastic law has other coefficients."),
+        (["recalibration"], False, [], "No other physics shows: the elastic law has other coefficients."),
         (
             ["recalibration"],
             True,
