@@ -59,11 +59,19 @@ IRREGULAR = 0.1
 """Part of the steps in time that may be gaps; with more, the recording is sampled irregularly."""
 
 
-def longest_unbroken(time: FloatArray) -> slice:
-    """Return the longest stretch of samples (n,) without a gap in time [s]; all where it is sampled irregularly."""
+ON_ITS_WAY = 0.02
+"""Part of its span by which a deflection may differ on both sides of a gap in time that breaks no loop."""
+
+
+def longest_unbroken(time: FloatArray, deflection: FloatArray) -> slice:
+    """Return the longest stretch of samples (n,) without a gap in time [s] in which the deflection (n,) went on; all
+    where it is sampled irregularly.
+    """
     with np.errstate(over="ignore", invalid="ignore"):
         steps = np.diff(time)
         gaps = find_gaps(steps) + 1 if steps.size else np.empty(0, dtype=np.intp)
+        moved = np.abs(deflection[gaps] - deflection[gaps - 1])
+        gaps = gaps[moved > ON_ITS_WAY * np.ptp(deflection)]
     if gaps.size > IRREGULAR * steps.size:
         return slice(0, time.size)
     ends = np.array([0, *gaps.tolist(), time.size])

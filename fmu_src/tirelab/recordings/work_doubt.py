@@ -18,9 +18,10 @@ def work_doubt(
     """Return a sentence where the part gives out energy in every cycle, "" where it does not.
 
     part: not a tire; then also where its force falls on the way to the largest one, if it makes no whole cycle
-    What it did in a gap of the time is not known, so cycles are whole within the longest stretch without one only.
+    What it did in a gap of the time is not known where it is elsewhere after it, so cycles are whole within the longest
+    stretch without such a gap only.
     """
-    unbroken = longest_unbroken(time)
+    unbroken = longest_unbroken(time, deflection)
     share = work_share(deflection[unbroken], force[unbroken])
     if share < -CLEAR:
         return (

@@ -139,7 +139,9 @@ def headline(
         text = "The elastic law has other coefficients, and more than the noise is left"
     elif not physics and not unexplained:
         text = (
-            "No other physics shows: the elastic law has other coefficients" if names else "Nothing is missing"
+            "No other physics shows: the elastic law has other coefficients"
+            if names
+            else "Nothing is missing"
         )
     elif not names:
         text = "Something is missing that no known effect explains"

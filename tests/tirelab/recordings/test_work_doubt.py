@@ -51,3 +51,14 @@ def test_what_a_part_did_while_nothing_was_recorded_is_not_known(tmp_path: Path)
     write_rows(tmp_path / "a.csv", "time [s],height [mm],force [N]", time, np.tile(way, 5), np.tile(leg, 5))
     found = Reading(part=True, columns=SIGNED)(tmp_path / "a.csv")
     assert not any("backwards" in doubt for doubt in found.doubts)
+
+
+def test_a_sample_that_comes_late_breaks_no_loop(tmp_path: Path) -> None:
+    """Loops that run backwards, with one sample in fifty lost: what the part did meanwhile is a straight line."""
+    way = 0.5 * (1.0 - np.cos(np.pi * TIME / 2.0))
+    force = 5.0 * way - 2.0 * np.sin(np.pi * TIME / 2.0)
+    kept = np.arange(TIME.size) % 50 != 25
+    columns = "time [s],height [mm],force [N]"
+    write_rows(tmp_path / "a.csv", columns, TIME[kept], way[kept], force[kept])
+    found = Reading(part=True, columns=SIGNED)(tmp_path / "a.csv")
+    assert any("run backwards" in doubt for doubt in found.doubts)
