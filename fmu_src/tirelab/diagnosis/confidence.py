@@ -25,7 +25,6 @@ from radialtire import CATALOGUE
 from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
-from ..preprocessing.noise import NEGLIGIBLE
 from ..regressors.excitation import acts_on_reading
 from .acceptance import HeldOut
 
@@ -62,7 +61,6 @@ OF_EFFECT = (
     "odds",
     "contested",
     "share",
-    "small",
     "remainder_share",
     "remainder_size",
     "structure",
@@ -78,7 +76,7 @@ OF_EFFECT = (
 
 LOWERING = (
     *("contested", "remainder_share", "remainder_size", "structure", "transfer"),
-    *("alike", "imitated", "beside_law", "law_alone", "small"),
+    *("alike", "imitated", "beside_law", "law_alone"),
 )
 """Grounds that may only lower a probability."""
 
@@ -131,8 +129,7 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
     """Return the grounds of the probability of one effect; those not explained here are as in `grounds_of_verdict`.
 
     odds: log odds of all sets with it against all without; contested: tempered probability of all sets without it
-    share: ln of its share of the misfit; small: 1 where that is NEGLIGIBLE, and may be what an equation of another
-    effect misses; alike: ln(1 + number of effects that this motion cannot distinguish from it)
+    share: ln of its share of the misfit; alike: ln(1 + number of effects that this motion cannot distinguish from it)
     imitated: for an effect that, on one surface, a law of another shape can imitate. Beside a refitted law: the number
     of its parameters of form, by which it can follow such a law (an effect with a strength only does not fit by
     chance). Else: the tempered odds, at most 1, of that law in place of all such effects
@@ -154,7 +151,6 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
         "odds": _limited(odds),
         "contested": sum(e.probability for e in explanation.evidence if effect.name not in e.names),
         "share": _share(effect),
-        "small": float(effect.share < NEGLIGIBLE),
         **_of_fit(explanation, validation, explanation.remainder),
         "alike": math.log1p(alike),
         "imitated": _imitated(effect.name, names, explanation),
@@ -166,12 +162,9 @@ def grounds_of_effect(effect: NamedEffect, explanation: Explanation, validation:
 
 
 def probability(of: str, grounds: Grounds) -> float:
-    """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds; one that the calibration
-    does not know yet counts for nothing.
-    """
+    """Return the calibrated probability `of` a "verdict" or an "effect" with these grounds."""
     weights = _weights()[of]
-    line = weights["constant"] + sum(weights.get(n, 0.0) * g for n, g in grounds.items())
-    return 1.0 / (1.0 + math.exp(-line))
+    return 1.0 / (1.0 + math.exp(-weights["constant"] - sum(weights[n] * g for n, g in grounds.items())))
 
 
 def probability_of_effect(name: str, grounds: Grounds) -> float:

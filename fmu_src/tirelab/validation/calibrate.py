@@ -2,14 +2,12 @@
 
 Run: python -m tirelab.validation.calibrate --seed SEED --trials N --out FILE
      python -m tirelab.validation.calibrate --proof DIR --out FILE
-     python -m tirelab.validation.calibrate --seed SEED --trials N --onto FILE --out FILE
 
 Every trial is drawn, diagnosed and scored, or read from the folder of a finished `tirelab prove`; its grounds
 (`diagnosis.confidence`) and whether it was right are kept. The weights maximise the posterior under independent normal
 priors of standard deviation 1, for grounds of standard deviation 1; the weights of `LOWERING` are at most zero, those
 of `RAISING` at least zero. The skill is computed by ten-fold cross-validation. The file that is written has the form of
-`diagnosis/calibration.json`, which a diagnosis reads. With `--onto` the weights of such a file stay, and only those of
-grounds of an effect that it lacks are fitted beside them: one ground more needs fewer trials than all of them.
+`diagnosis/calibration.json`, which a diagnosis reads.
 """
 
 from __future__ import annotations
@@ -70,30 +68,13 @@ def effect_rows(score: Score, grounds: Mapping[str, Mapping[str, float]]) -> lis
 
 def fitted_weights(rows: Sequence[Row], names: Sequence[str]) -> dict[str, float]:
     """Return the weights of the grounds, and the constant."""
-    return _fitted(rows, names, {}, constant=True)
-
-
-def added_weights(
-    rows: Sequence[Row], names: Sequence[str], weights: Mapping[str, float]
-) -> dict[str, float]:
-    """Return the weights, with those of the named grounds fitted beside all others, which stay as they are."""
-    kept = {**weights, **dict.fromkeys(names, 0.0)}
-    return {**kept, **_fitted(rows, names, kept, constant=False)}
-
-
-def _fitted(
-    rows: Sequence[Row], names: Sequence[str], beside: Mapping[str, float], *, constant: bool
-) -> dict[str, float]:
-    """Return fitted weights; beside: those that are known, if any; constant: whether it is fitted too."""
     values = np.array([[row.grounds[n] for n in names] for row in rows])
     right = np.array([row.right for row in rows], dtype=float)
-    known = _lines(rows, beside) if beside else np.zeros(len(rows))
-    spread = np.maximum(values.std(axis=0), 1e-9)
-    middle = values.mean(axis=0) if constant else np.zeros(len(names))
-    columns = np.column_stack([np.full(len(rows), float(constant)), (values - middle) / spread])
+    middle, spread = values.mean(axis=0), np.maximum(values.std(axis=0), 1e-9)
+    columns = np.column_stack([np.ones(len(rows)), (values - middle) / spread])
 
     def cost(w: FloatArray) -> tuple[float, FloatArray]:
-        line = known + columns @ w
+        line = columns @ w
         value = float(np.sum(np.logaddexp(0.0, line) - right * line) + 0.5 * np.sum(w[1:] ** 2))
         slope = columns.T @ (expit(line) - right) + np.append(0.0, w[1:])
         return value, slope
@@ -104,23 +85,17 @@ def _fitted(
     ]
     found = minimize(cost, np.zeros(len(names) + 1), jac=True, bounds=bounds, method="L-BFGS-B").x
     weights = found[1:] / spread
-    fitted = {n: float(w) for n, w in zip(names, weights, strict=True)}
-    return {"constant": float(found[0] - weights @ middle), **fitted} if constant else fitted
-
-
-def _lines(rows: Sequence[Row], weights: Mapping[str, float]) -> FloatArray:
-    """Return the log odds of the rows by given weights."""
-    return np.array(
-        [
-            weights["constant"] + sum(weights[n] * row.grounds[n] for n in weights if n != "constant")
-            for row in rows
-        ]
-    )
+    constant = float(found[0] - weights @ middle)
+    return {"constant": constant, **{n: float(w) for n, w in zip(names, weights, strict=True)}}
 
 
 def probabilities(rows: Sequence[Row], weights: Mapping[str, float]) -> FloatArray:
     """Return the probabilities of the rows by given weights."""
-    return np.asarray(expit(_lines(rows, weights)))
+    lines = [
+        weights["constant"] + sum(weights[n] * row.grounds[n] for n in weights if n != "constant")
+        for row in rows
+    ]
+    return np.asarray(expit(np.array(lines)))
 
 
 def skill(stated: FloatArray, right: FloatArray) -> float:
@@ -129,20 +104,15 @@ def skill(stated: FloatArray, right: FloatArray) -> float:
     return brier_skill([[pair] for pair in pairs]).value
 
 
-def skill_left_out(
-    rows: Sequence[Row], names: Sequence[str], weights: Mapping[str, float] | None = None
-) -> float:
-    """Return the skill where each part of the trials is judged by the weights of the others; weights: of all other
-    grounds, where these stay.
-    """
+def skill_left_out(rows: Sequence[Row], names: Sequence[str]) -> float:
+    """Return the skill where each part of the trials is judged by the weights of the others."""
     trials = sorted({row.trial for row in rows})
     part = {trial: i % PARTS for i, trial in enumerate(trials)}
     stated = np.zeros(len(rows))
     for number in range(PARTS):
         left_out = [i for i, row in enumerate(rows) if part[row.trial] == number]
-        others = [row for row in rows if part[row.trial] != number]
-        found = fitted_weights(others, names) if weights is None else added_weights(others, names, weights)
-        stated[left_out] = probabilities([rows[i] for i in left_out], found)
+        weights = fitted_weights([row for row in rows if part[row.trial] != number], names)
+        stated[left_out] = probabilities([rows[i] for i in left_out], weights)
     return skill(stated, np.array([row.right for row in rows], dtype=float))
 
 
@@ -196,29 +166,6 @@ def calibrated(trials: Sequence[Trial], provenance: Mapping[str, Any]) -> dict[s
     weights = fitted_weights(effects, OF_EFFECT)
     verdicts = [verdict_row(t.stating(weights).score, t.grounds) for t in trials]
     return calibration_of(verdicts, effects, provenance)
-
-
-def calibrated_onto(file: Path, trials: Sequence[Trial], provenance: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content of a calibration's file with the weights of the grounds of an effect that it lacks, the
-    command that made them, and the skill of an effect's probability without and with them.
-    """
-    content = read_json(file)
-    weights = content["effect"]["weights"]
-    lacking = [n for n in OF_EFFECT if n not in weights]
-    rows = [row for t in trials for row in effect_rows(t.score, t.effects)]
-    right = np.array([row.right for row in rows], dtype=float)
-    found = added_weights(rows, lacking, weights)
-    added = {
-        **provenance,
-        "grounds": lacking,
-        "rows": len(rows),
-        "right": float(right.mean()),
-        "skill_without": round(skill(probabilities(rows, weights), right), 4),
-        "skill": round(skill(probabilities(rows, found), right), 4),
-        "skill_left_out": round(skill_left_out(rows, lacking, weights), 4),
-    }
-    rounded = {n: round(w, 6) for n, w in found.items()}
-    return {**content, "effect": {**content["effect"], "weights": rounded, "added": added}}
 
 
 def diagnosed(folder: Path, seed: int, number: int, kind: str | None) -> dict[str, Any]:
@@ -286,14 +233,7 @@ def _score(key: str, answer: Mapping[str, Any], verdict: Verdict) -> Score:
 @click.option(
     "--kept", type=click.Path(path_type=Path), help="File for the trials; one that is there is gone on with."
 )
-@click.option(
-    "--onto",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A calibration whose weights stay: only grounds of an effect that it lacks are weighed.",
-)
-def main(
-    seed: Sequence[int], proof: Sequence[Path], trials: int, out: Path, kept: Path | None, onto: Path | None
-) -> None:
+def main(seed: Sequence[int], proof: Sequence[Path], trials: int, out: Path, kept: Path | None) -> None:
     """Calibrate on trials of all kinds in turn."""
     done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8")) if kept and kept.exists() else {}
     try:
@@ -323,7 +263,6 @@ def main(
         *(f"--seed {s}" for s in seed),
         *([f"--trials {trials}"] if seed else []),
         *["--proof DIR"] * len(proof),
-        *(["--onto FILE"] if onto else []),
     ]
     provenance = {
         "command": f"python -m tirelab.validation.calibrate {' '.join(words)}",
@@ -331,15 +270,10 @@ def main(
         "kinds": "all in turn",
     }
     ordered = [Trial.from_json(done[key]) for key in sorted(done)]
-    content = calibrated(ordered, provenance) if onto is None else calibrated_onto(onto, ordered, provenance)
+    content = calibrated(ordered, provenance)
     out.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-    told = (
-        {of: content[of] for of in ("verdict", "effect")}
-        if onto is None
-        else {"effect": content["effect"]["added"]}
-    )
-    for of, own in told.items():
-        click.echo(f"{of}: skill {own['skill_left_out']:.2f} left out, {own['rows']} rows")
+    for of in ("verdict", "effect"):
+        click.echo(f"{of}: skill {content[of]['skill_left_out']:.2f} left out, {content[of]['rows']} rows")
 
 
 if __name__ == "__main__":

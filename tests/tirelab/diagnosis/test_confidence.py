@@ -118,20 +118,6 @@ def test_odds_of_an_effect_are_all_sets_with_it_against_all_without() -> None:
     assert damping["alike"] > inertia["alike"] == 0.0
 
 
-@pytest.mark.parametrize(("share", "small"), [(0.04, 1.0), (0.06, 0.0)])
-def test_an_effect_that_explains_next_to_nothing_beside_others_is_a_ground(
-    share: float, small: float
-) -> None:
-    """A twentieth of a misfit's square is what another effect's equation misses if it is off by a fifth."""
-    one = explained("inertia viscous_damping")
-    found = grounds_of_effect(replace(one.effects[0], share=share), one, HELD_OUT)
-    assert found["small"] == small
-
-
-def test_a_ground_that_the_calibration_does_not_know_counts_for_nothing() -> None:
-    assert probability("effect", {"odds": 2.0, "of tomorrow": 9.0}) == probability("effect", {"odds": 2.0})
-
-
 def test_an_effect_in_every_set_has_the_largest_odds_that_count() -> None:
     one = explained("inertia", ("inertia force_lag", -4.0))
     assert grounds_of_effect(one.effects[0], one, HELD_OUT)["odds"] == MOST_LOG_ODDS

@@ -13,7 +13,6 @@ from scipy.special import expit
 from tirelab.diagnosis.confidence import OF_EFFECT, OF_VERDICT
 from tirelab.validation.calibrate import (
     Row,
-    added_weights,
     calibration_of,
     fitted_weights,
     main,
@@ -60,13 +59,6 @@ def test_a_ground_that_may_only_raise_gets_no_weight_where_it_seems_to_lower() -
     assert fitted_weights(turned, ["odds", "remainder_share"])["odds"] == 0.0
 
 
-def test_a_ground_that_is_added_is_weighed_beside_the_others_which_stay() -> None:
-    known = {n: w for n, w in TRUE.items() if n != "remainder_share"}
-    found = added_weights(rows(20_000), ["remainder_share"], known)
-    assert found["remainder_share"] == pytest.approx(-2.0, abs=0.2)
-    assert {n: found[n] for n in known} == known
-
-
 def test_skill_left_out_is_near_the_skill_on_other_rows_and_no_better_than_that_on_its_own() -> None:
     few = rows(150)
     names = ["odds", "remainder_share"]
@@ -87,9 +79,7 @@ def test_grounds_without_meaning_have_no_skill_left_out() -> None:
 
 def test_a_calibration_states_rows_rate_skill_and_a_weight_for_every_ground() -> None:
     whole = [Row(r.trial, {**dict.fromkeys(OF_VERDICT, 0.0), **r.grounds}, r.right) for r in rows(200)]
-    effects = [
-        Row(r.trial, {**r.grounds, "share": 0.0, "small": 0.0, "beside_law": 0.0}, r.right) for r in whole
-    ]
+    effects = [Row(r.trial, {**r.grounds, "share": 0.0, "beside_law": 0.0}, r.right) for r in whole]
     content = calibration_of(whole, effects, {"command": "x"})
     assert content["command"] == "x"
     assert content["verdict"]["rows"] == 200
@@ -141,35 +131,6 @@ def test_finished_proofs_are_calibrated_on(proof: Path, tmp_path: Path) -> None:
     for of, names in (("verdict", OF_VERDICT), ("effect", OF_EFFECT)):
         assert set(found[of]["weights"]) == {"constant", *names}
         assert found[of]["weights"]["odds"] > 0.0
-
-
-def test_onto_a_calibration_only_what_it_lacks_is_fitted(proof: Path, tmp_path: Path) -> None:
-    """Of twelve effects the six that explain little are wrong; another ground of the calibration is not asked again."""
-    for path in (Folders(proof).verdict(f"{n:04d}") / "diagnosis.json" for n in range(0, 12, 2)):
-        content = json.loads(path.read_text(encoding="utf-8"))
-        content["verdict"]["effects"][0]["grounds"]["small"] = 1.0
-        path.write_text(json.dumps(content), encoding="utf-8")
-    before = {of: {"weights": {"constant": 0.5, "odds": 0.1}} for of in ("verdict", "effect")}
-    before["effect"]["weights"] |= dict.fromkeys(set(OF_EFFECT) - {"small", "odds"}, 0.0)
-    write_json(tmp_path / "before.json", before)
-    arguments = [
-        "--proof",
-        str(proof),
-        "--onto",
-        str(tmp_path / "before.json"),
-        "--out",
-        str(tmp_path / "new.json"),
-    ]
-    told = CliRunner().invoke(main, arguments)
-    assert told.exit_code == 0, told.output
-    found = json.loads((tmp_path / "new.json").read_text(encoding="utf-8"))
-    assert found["verdict"] == before["verdict"]
-    own = found["effect"]
-    assert {n: w for n, w in own["weights"].items() if n != "small"} == before["effect"]["weights"]
-    assert own["weights"]["small"] < -1.0
-    assert own["added"]["grounds"] == ["small"]
-    assert own["added"]["rows"] == 13
-    assert own["added"]["skill_left_out"] > own["added"]["skill_without"]
 
 
 def test_a_proof_that_does_not_say_why_effects_were_doubted_is_refused(proof: Path, tmp_path: Path) -> None:
