@@ -108,7 +108,7 @@ def test_a_form_lies_within_three_standard_deviations_of_its_prior_or_where_it_i
 
 
 def test_a_gauge_may_be_late_as_behind_a_filter_of_second_order_and_a_few_hertz() -> None:
-    """To the second order Butterworth's of 4 Hz is a delay of sqrt(2) / (2 pi 4 Hz) = 56 ms: what it leaves is a mass."""
+    """Butterworth's of 4 Hz is a delay of sqrt(2) / (2 pi 4 Hz) = 56 ms, to the second order: else a mass is left."""
     (delay,) = [p for p in parameters_of_effect("deflection_lag", DATASET.scales) if p.label == "delay"]
     assert delay.value(99.0) > np.sqrt(2.0) / (8.0 * np.pi)
 
