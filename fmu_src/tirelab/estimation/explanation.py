@@ -266,9 +266,9 @@ def _explained(asked: _Asked) -> Explanation:
     blocks = FirstSets(dataset, raw, samples, others, FIRST_PART * most_work)
     alike = partial(alike_in, excitation)
     sets = blocks.begun(quiet)
-    sets = blocks.less_distorted(sets, sets.best_fit.tire)
+    sets = blocks.less_distorted(sets, sets.best_fit)
     ranking = ranked(sets, alike)
-    again = blocks.less_distorted(sets, ranking.best.tire)
+    again = blocks.less_distorted(sets, ranking.best)
     if again is not sets or sets.work >= sets.most_work:
         sets = replace(again, most_work=most_work - sets.work if again is not sets else most_work)
         ranking = ranked(sets, alike)

@@ -14,7 +14,6 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from radialtire import TireModel
 
 from ..preprocessing.driven import Driven
 from ..preprocessing.levels import NoiseProfile, levels_by_load, levels_by_state, white_level
@@ -39,6 +38,7 @@ from ..selection.search import (
     search,
     usual_form_error,
 )
+from .fit import Fit
 from .held_out import HeldOutRecordings
 from .ranking import FittedSets, begun
 
@@ -89,17 +89,19 @@ class FirstSets:
         starts = [(e.variance, parts_of(e, equations, rough)) for e in likely]
         return begun(quiet, signatures, rough, starts, self.held_out, self.most_work)
 
-    def less_distorted(self, sets: FittedSets, tire: TireModel) -> FittedSets:
-        """Return the sets begun anew without what blocks leave out of a tire's response; the same ones where that is
-        no more than noise.
+    def less_distorted(self, sets: FittedSets, fit: Fit) -> FittedSets:
+        """Return the sets begun anew without what blocks leave out of a fit's response, that fit among them; the same
+        ones where it is no more than noise.
 
-        It passed for noise, or for something that another effect is.
+        It passed for noise, or for something that another effect is. Begun anew, the search may not find that set.
         """
-        left_out = self.samples.left_out(sets.dataset, tire)
+        left_out = self.samples.left_out(sets.dataset, fit.tire)
         more = [new - e.left_out for new, e in zip(left_out, sets.dataset.experiments, strict=True)]
         if size_of(sets.dataset.stacked(more)) <= LIKE_NOISE:
             return sets
-        return self.begun(_in_saturated_noise(self.dataset.corrected(left_out), self.signatures))
+        found = self.begun(_in_saturated_noise(self.dataset.corrected(left_out), self.signatures))
+        found.fit([fit.values], fit.variance)
+        return found
 
 
 def _raw(dataset: Dataset, shown: Sequence[str], catalogue: Sequence[str]) -> tuple[Signature, ...]:
