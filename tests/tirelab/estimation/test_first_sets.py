@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -90,7 +92,12 @@ def test_sets_begin_anew_only_where_blocks_distort_a_response_by_more_than_noise
     first, sets = first_of(replace(long, force=simulate(exact, long) + noise))
     (e,) = sets.dataset.experiments
     assert e.size > 1
-    assert first.less_distorted(sets, TireModel()) is sets
-    again = first.less_distorted(sets, arranged(exact, [("force_lag", (0.4 * e.interval, 0.0, 0.0))]))
+    assert first.less_distorted(sets, sets.fits[frozenset()]) is sets
+    late = arranged(exact, [("force_lag", (0.4 * e.interval, 0.0, 0.0))])
+    values = {**sets.best_fit.values, "inertia": (1.0,)}
+    fit: Any = SimpleNamespace(tire=late, values=values, variance=sets.best_fit.variance)
+    again = first.less_distorted(sets, fit)
     assert again is not sets
     assert np.any(again.dataset.experiments[0].left_out)
+    # what was found before is not lost, whether or not the signatures find it again
+    assert frozenset(values) in again.fits
