@@ -198,10 +198,11 @@ def _contradiction(
     def explain_fitted(several: Sequence[Recorded]) -> Explanation:
         return explain(several, data.kept)
 
+    clearest = _clearest(candidates, explanation)
     return (
         contradiction_of(explanation, fitted, data.motions, data.residuals, explain_fitted)
-        or difference_between(_clearest(candidates, explanation), fitted, data.motions, explain_fitted)
-        or _contradicted_by_held_out(data, _clearest(candidates, explanation))
+        or difference_between(clearest, fitted, data.motions, explain_fitted)
+        or _contradicted_by_held_out(data, clearest)
         or contradicting_channel(explanation, fitted, data.kept, explain)
     )
 
@@ -209,7 +210,9 @@ def _contradiction(
 def _clearest(candidates: Explanation, chosen: Explanation) -> Explanation:
     """Return the set that explains the fitted recordings, whether the held-out ones refused it or not."""
     names = candidates.likeliest_fitted
-    likeliest = candidates.of(names) if candidates.was_fitted(names) else chosen
+    if set(names) == set(chosen.model.names) or not candidates.was_fitted(names):
+        return chosen
+    likeliest = candidates.of(names)
     return likeliest if likeliest.error < EXPLAINED * chosen.error else chosen
 
 

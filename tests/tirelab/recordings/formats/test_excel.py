@@ -166,9 +166,8 @@ class TestExcel:
     def test_sheets_on_each_of_which_several_tests_stand_have_the_tests_of_all(self, tmp_path: Path) -> None:
         openpyxl = pytest.importorskip("openpyxl")
         book = openpyxl.Workbook()
-        book.remove(book.active)
-        for sheet in map(book.create_sheet, ("Day 0", "Day 7")):
-            first = 10.0 if sheet.title == "Day 0" else 30.0
+        book.active.title = "Day 0"
+        for sheet, first in ((book.active, 10.0), (book.create_sheet("Day 7"), 30.0)):
             sheet.append([f"{name} {n}" for n in (1, 2) for name in ("time [s]", "stroke [mm]", "load [N]")])
             for i in range(40):
                 sheet.append([v for n in (0.0, 10.0) for v in (0.1 * i, 0.2 * i, (first + n) * i)])
