@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.linalg import solveh_banded
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, median_filter
 
 from .gauge import deflection_noise
 from .noise import NEGLIGIBLE, STANDS_OUT
@@ -43,7 +43,8 @@ IndexArray = NDArray[np.intp]
 
 CORNER = TRIMMED**2
 """The motion has a corner within a sample where five samples miss a cubic by this multiple of the noise variance (one
-in 400 of pure noise does), and by more than NEGLIGIBLE of the travel per sample."""
+in 400 of pure noise does), by as much of what most of those around it do, and by more than NEGLIGIBLE of the travel per
+sample."""
 
 CORNER_SAMPLES = 6
 """Most samples in which one corner shows."""
@@ -128,13 +129,17 @@ def _smoothed(
 
 
 def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
-    """Return where five samples follow a cubic."""
+    """Return where five samples follow a cubic, or miss it by no more than most around them do: that is a motion of few
+    samples a cycle, and a corner stands out.
+    """
     resolved = np.ones(deflection.size, dtype=bool)
     travel = float(np.sqrt(max(np.mean(np.diff(deflection) ** 2) - 2.0 * noise**2, 0.0)))
     basis = np.linalg.qr(np.vander(np.arange(-2.0, 3.0), 4, increasing=True))[0]
     outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
     misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
-    resolved[2:-2] = misfit < max(CORNER * noise**2, (NEGLIGIBLE * travel) ** 2)
+    least = max(CORNER * noise**2, (NEGLIGIBLE * travel) ** 2)
+    around = median_filter(misfit, 2 * SHORTEST + 1, mode="reflect")
+    resolved[2:-2] = misfit < np.maximum(least, CORNER * around)
     return resolved
 
 

@@ -85,6 +85,18 @@ def test_rates_of_a_sine() -> None:
     assert np.mean(motion.resolved) > 0.99
 
 
+@pytest.mark.parametrize(("period", "most"), [(8, 0.01), (6, 0.03), (5, 0.06)])
+def test_a_sine_of_few_samples_a_cycle_has_no_corners(period: int, most: float) -> None:
+    """Of what has the period of n samples, a spline of the highest cut-off, 2 pi, passes 1 / (1 + n^-6): a part of
+    1e-4; the reflected ends and a cut-off that is chosen from few samples cost more.
+    """
+    angle = 2.0 * np.pi * np.arange(2000) / period
+    motion = motion_of(np.arange(2000) * INTERVAL, noisy(10e-3 * (1.0 - np.cos(angle)), 1e-6))
+    assert motion.resolved.all()
+    rate = 10e-3 * 2.0 * np.pi / (period * INTERVAL) * np.sin(angle)
+    assert np.std((motion.rate - rate)[20:-20]) < most * np.std(rate)
+
+
 def test_a_corner_within_a_sample_is_not_resolved_and_keeps_its_reading() -> None:
     time, deflection = triangles(1)
     reading = noisy(deflection, 1e-7)
