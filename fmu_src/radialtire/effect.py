@@ -160,6 +160,17 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class LookAlike:
+    """Something outside the catalogue that leaves the same in a recording, so that no fit tells it from an effect.
+
+    what: it; check: what tells the two apart, as an action
+    """
+
+    what: str
+    check: str
+
+
+@dataclass(frozen=True)
 class Effect:
     """One piece of physics.
 
@@ -169,7 +180,7 @@ class Effect:
     initial_state: its state before the first sample
     respond: the pure response (see Response)
     statement: one sentence for the verdict; tell_tale: how it shows in a recording; imitators: what looks like it
-    source: where equation and magnitudes come from
+    source: where equation and magnitudes come from; look_alike: outside the catalogue, None for the law's own shape
     differentiates: whether it uses rate or acceleration; traits: of TRAITS
     form_error: part of its response by which other formulations of the same physics differ from it once fitted, as
     measured by `tirelab.validation.form_errors` (at least 0.001; a lag of the deflection and a drift were never alone)
@@ -187,6 +198,7 @@ class Effect:
     tell_tale: str
     imitators: tuple[str, ...]
     source: str
+    look_alike: LookAlike | None = None
     differentiates: bool = False
     traits: tuple[str, ...] = ()
     form_error: float = 0.02

@@ -143,6 +143,12 @@ def test_it_is_described(effect: Effect) -> None:
     assert len(effect.source) > 20
     for sentence in (effect.statement, effect.tell_tale, effect.source):
         assert not sentence.endswith(".")
+    # The law's own shape is no effect that a verdict names: the refitted law has a look-alike of its own.
+    assert (effect.look_alike is None) == (effect.place == "law")
+    if effect.look_alike is not None:
+        for sentence in (effect.look_alike.what, effect.look_alike.check):
+            assert len(sentence) > 10
+            assert sentence == sentence.strip(" .")
     assert effect.imitators
     for other in effect.imitators:
         assert other != effect.name

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 from .soft_knee import FAR
@@ -89,6 +89,10 @@ BOTTOMING = Effect(
     tell_tale="a local knee in the force at one deflection, on every surface; nothing below it",
     imitators=("gas_compression", "recalibration", "mullins_softening"),
     source="a second spring with a soft onset; no magnitude for bicycle tires was found, bounds wide",
+    look_alike=LookAlike(
+        "a stop of the machine, or a cable that gets taut",
+        "move it as far without the tire or part",
+    ),
     traits=("static", "localized"),
     form_error=0.0024,
 )

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -63,6 +63,7 @@ DEFLECTION_LAG = Effect(
     tell_tale="a loop whose height grows with the rate and with the stiffness, so with the mean deflection",
     imitators=("viscous_damping", "viscoelastic_relaxation"),
     source="the inverse of a first-order lag; table of tell-tales: 5 ms at 0.5 Hz make a loop of 2.2 %; bounds wide",
+    look_alike=LookAlike("play between actuator and gauge", "reverse slowly: play stays, a lag goes"),
     differentiates=True,
     traits=("rate", "loop", "reading"),
     form_error=0.01,

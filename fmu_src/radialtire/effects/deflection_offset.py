@@ -7,7 +7,7 @@ Hull, Wang & Moore (1996) explain the difference to an earlier rig by 1 mm of it
 
 from __future__ import annotations
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -41,6 +41,10 @@ DEFLECTION_OFFSET = Effect(
     tell_tale="misfit at small deflections, where the tangent of the force against the deflection is steepest",
     imitators=("recalibration", "series_compliance", "force_offset"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 1 mm, or 22 N of preload, between two rigs",
+    look_alike=LookAlike(
+        "knobs or a foot that give way at the first touch",
+        "read the gauge where a sheet of paper is just held",
+    ),
     traits=("static", "reading"),
     form_error=0.001,
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -60,6 +60,7 @@ FORCE_DRIFT = Effect(
     tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
     imitators=("pressure_leak", "warm_up", "force_offset"),
     source="warm-up drift of an amplifier, at first a straight line; magnitudes are in its data sheet, bounds wide",
+    look_alike=LookAlike("a fixture that settles", "read the force in the air, before and after"),
     traits=("slow", "reading"),
     form_error=0.001,
 )

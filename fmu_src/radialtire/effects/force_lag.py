@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Flow, Instant, State
+from ..effect import Effect, Flow, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -177,6 +177,7 @@ FORCE_LAG = Effect(
     tell_tale="the loop is reversed: unloading reads higher than loading",
     imitators=("inertia", "viscous_damping", "viscoelastic_relaxation"),
     source="low-pass and transport delay; 5 ms at 0.5 Hz make a loop of -2.2 %; magnitudes are an estimate",
+    look_alike=LookAlike("two loggers out of step", "knock on it once: both channels show it at one time"),
     traits=("rate", "loop", "reading"),
     form_error=0.013,
 )

@@ -7,7 +7,7 @@ Hull, Wang & Moore (1996) could explain the difference from an earlier rig by 22
 
 from __future__ import annotations
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -41,6 +41,10 @@ FORCE_OFFSET = Effect(
     tell_tale="the residual is one constant at every deflection and time, also without contact",
     imitators=("deflection_offset", "force_drift", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 22 N of preload, or 1 mm, between two rigs",
+    look_alike=LookAlike(
+        "a spring or a cable beside what is tested",
+        "read the force in the air at two heights",
+    ),
     traits=("static", "reading"),
     form_error=0.001,
 )

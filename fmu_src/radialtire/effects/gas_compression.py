@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..hull1996 import WHEEL_RADIUS
 from ..parameter import Parameter
 from ..prior import Prior
@@ -107,6 +107,7 @@ GAS_COMPRESSION = Effect(
     tell_tale="stiffening at large deflections in one proportion on every surface; a pressure channel shows it",
     imitators=("recalibration", "bottoming", "series_compliance"),
     source="polytropic gas law; 101.3 kPa over 344.7 kPa; 3 to 4 % of pressure at 25 mm is an estimate, bounds wide",
+    look_alike=LookAlike("a load cell that reads too much at large forces", "hang known weights on it"),
     traits=("static", "air"),
     form_error=0.029,
     changes=("pressure",),

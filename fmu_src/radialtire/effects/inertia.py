@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -46,6 +46,10 @@ INERTIA = Effect(
     tell_tale="the residual is in proportion to the acceleration, so it grows with the square of the frequency",
     imitators=("force_lag", "deflection_lag", "viscous_damping"),
     source="Newton's second law; masses of fixtures are not published, bounds wide",
+    look_alike=LookAlike(
+        "a filter of the force of a higher order",
+        "move it in the air: a mass shows there, a filter does not",
+    ),
     differentiates=True,
     traits=("rate",),
     form_error=0.01,

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, Reading, State, is_measured
+from ..effect import Effect, Instant, LookAlike, Reading, State, is_measured
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -85,6 +85,7 @@ INFLATION_PRESSURE = Effect(
     source="MF-Tyre 6.1, pFz1 (Besselink, Schmeitz & Pacejka, Vehicle System Dynamics 48, 2010, S1); Dressel & "
     "Sadauckas, Appl. Sci. 10(9), 3156 (2020), doi 10.3390/app10093156; Renart & Roura-Grabulosa, Am. J. Phys. 87, 102 "
     "(2019); Hull, Wang & Moore 1996: 344.7 kPa",
+    look_alike=LookAlike("a pressure gauge with another scale", "read a second gauge beside it"),
     traits=("static", "air"),
     form_error=0.013,
     reads=Reading("pressure", "reference"),

@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..hull1996 import FLAT_COEFFICIENT, FLAT_EXPONENT
 from ..parameter import Parameter
 from ..prior import Prior
@@ -163,6 +163,10 @@ MULLINS_SOFTENING = Effect(
     tell_tale="the first loading to a new largest deflection differs from every later one, however long the rest",
     imitators=("rate_independent_hysteresis", "pressure_leak", "warm_up", "bottoming"),
     source="Ogden & Roxburgh 1999; no magnitude for bicycle tires was found, bounds wide",
+    look_alike=LookAlike(
+        "a bead, a clamp or a fixture that seats in the first loading",
+        "take it out and put it in again: a seat settles anew",
+    ),
     traits=("loop",),
     form_error=0.001,
 )

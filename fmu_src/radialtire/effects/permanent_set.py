@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -101,6 +101,10 @@ PERMANENT_SET = Effect(
     tell_tale="unloading is steeper than loading, and the next loading begins where it ended, without a loop",
     imitators=("mullins_softening", "rate_independent_hysteresis", "viscoelastic_relaxation"),
     source="Oliver & Pharr 1992; no magnitude for bicycle tires was found, bounds wide",
+    look_alike=LookAlike(
+        "a clamp or a gauge that slips",
+        "read the gauge at the first touch, before and after",
+    ),
     traits=("loop",),
     form_error=0.003,
 )

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -78,6 +78,10 @@ PRESSURE_LEAK = Effect(
     tell_tale="a cycle that is repeated at the end is lower, in proportion to the force",
     imitators=("warm_up", "mullins_softening", "force_drift"),
     source="outflow with a power of the pressure; 0.3 psi a day is from weak web sources, bounds wide",
+    look_alike=LookAlike(
+        "a zero of the deflection's gauge that creeps",
+        "read the gauge at the first touch, before and after",
+    ),
     traits=("slow", "air"),
     form_error=0.001,
     changes=("pressure",),

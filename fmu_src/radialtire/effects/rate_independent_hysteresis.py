@@ -32,7 +32,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -203,6 +203,7 @@ RATE_INDEPENDENT_HYSTERESIS = Effect(
     tell_tale="the loop stays as the frequency goes to zero, and keeps its area at every speed",
     imitators=("viscous_damping", "viscoelastic_relaxation", "mullins_softening"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: 100 N, 6.5 % of the peak; Dahl 1968; Iwan 1966",
+    look_alike=LookAlike("friction in the guides of the machine", "press a steel spring in its place"),
     traits=("loop",),
     form_error=0.028,
 )

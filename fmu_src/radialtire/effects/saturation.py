@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 from .soft_knee import FAR
@@ -70,6 +70,10 @@ SATURATION = Effect(
     tell_tale="a flat top: the residual is one-sided above one force, on every surface",
     imitators=("series_compliance", "recalibration"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996: load cell rated at 4480 N; limits are set by the rig",
+    look_alike=LookAlike(
+        "a machine that yields or is limited in force",
+        "load the load cell alone beyond that force",
+    ),
     traits=("static", "localized", "reading"),
     form_error=0.0015,
 )

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, State
+from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -130,6 +130,7 @@ SERIES_COMPLIANCE = Effect(
     tell_tale="large forces are too low, on every surface by the same function of the force",
     imitators=("recalibration", "deflection_offset", "gas_compression", "saturation"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Hopkins & Principe 1990: 2e6 N/m",
+    look_alike=LookAlike("a load cell that reads too little at large forces", "hang known weights on it"),
     traits=("static",),
     form_error=0.001,
 )

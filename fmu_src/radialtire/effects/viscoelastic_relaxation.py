@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Flow, Instant, State
+from ..effect import Effect, Flow, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -251,6 +251,7 @@ VISCOELASTIC_RELAXATION = Effect(
     tell_tale="the force decays in a hold; the loop's area peaks where the frequency is 1 / (2 pi tau)",
     imitators=("viscous_damping", "rate_independent_hysteresis", "pressure_leak", "recalibration"),
     source="Fung 1981, section 7.6; no magnitude for bicycle tires was found, bounds wide",
+    look_alike=LookAlike("a load cell or a fixture that creeps", "hold a steel spring in its place, as long"),
     traits=("rate", "loop", "rest"),
     form_error=0.0089,
 )

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Flow, Instant, State
+from ..effect import Effect, Flow, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -292,6 +292,10 @@ VISCOUS_DAMPING = Effect(
     tell_tale="the loop's area grows with the frequency",
     imitators=("rate_independent_hysteresis", "viscoelastic_relaxation", "force_lag", "deflection_lag"),
     source="Hull, Wang & Moore, Cycling Science, Spring 1996, quoting Wang & Hull on rates from 3.2 to 63.5 mm/s",
+    look_alike=LookAlike(
+        "oil or seals of the machine that resist",
+        "press a steel spring in its place, as fast",
+    ),
     differentiates=True,
     traits=("rate", "loop"),
     form_error=0.019,

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from ..effect import Effect, Instant, Reading, State, is_measured
+from ..effect import Effect, Instant, LookAlike, Reading, State, is_measured
 from ..parameter import Parameter
 from ..prior import Prior
 
@@ -75,6 +75,10 @@ WARM_UP = Effect(
     tell_tale="a cycle that is repeated at the end is higher, in proportion to the force; the rise levels off",
     imitators=("pressure_leak", "mullins_softening", "force_drift"),
     source="gas law at constant volume: about 1 psi for 10 degF near 40 psi; time constants not found, bounds wide",
+    look_alike=LookAlike(
+        "an amplifier whose gain rises as it warms",
+        "hang a known weight on the load cell, before and after",
+    ),
     traits=("slow",),
     form_error=0.011,
     reads=Reading("temperature"),

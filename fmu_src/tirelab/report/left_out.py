@@ -9,6 +9,7 @@ from radialtire import CATALOGUE
 
 from ..names import REFITTED_LAW
 from . import titles, words
+from .look_alikes import look_alike_of
 from .sketches import draw_correction, draw_sketch
 
 
@@ -28,6 +29,7 @@ def effect_shown(
         "statement": words.LAW_STATEMENT if name == REFITTED_LAW else "",
         "tell_tale": known.tell_tale if known else "",
         "imitators": titles.listed([titles.short_title(n) for n in known.imitators]) if known else "",
+        "look_alike": look_alike_of(name),
         "source": known.source if known else "",
         "share": effect["share"],
         "law": [words.law_row(row, kind) for row in effect.get("law", [])],

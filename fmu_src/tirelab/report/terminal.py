@@ -12,6 +12,7 @@ from rich.text import Text
 
 from . import first_screen, titles, words
 from .delivered import delivered_of
+from .look_alikes import look_alikes
 
 MOST_PLACES = 6
 """Rows of the table of places."""
@@ -35,6 +36,8 @@ def print_diagnosis(console: Console, diagnosis: Mapping[str, Any], out: Path) -
         sections.append([_regressions(verdict["corrections"])])
     if verdict.get("alternative_details"):
         sections.append([_alternatives(verdict["alternative_details"])])
+    if verdict["effects"]:
+        sections.append([_look_alikes(verdict)])
     for section in sections:
         console.print(*section, sep="\n")
         console.print()
@@ -112,6 +115,13 @@ def _alternatives(details: Sequence[Mapping[str, Any]]) -> Table:
     for other in words.likeliest(details):
         chance = "not seen" if other["probability"] is None else words.percent(other["probability"])
         others.add_row(other["difference"], chance, other["action"] or other["reason"])
+    return others
+
+
+def _look_alikes(verdict: Mapping[str, Any]) -> Table:
+    others = _table("not in the catalogue, leaves the same", "in place of", "what tells it")
+    for title, what, check in look_alikes(verdict):
+        others.add_row(what, title, check)
     return others
 
 
