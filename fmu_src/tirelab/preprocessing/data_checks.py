@@ -32,6 +32,10 @@ BoolArray = NDArray[np.bool_]
 FEWEST_STEPS = 8
 """Fewest distinct deflections of a recording that moves most of the time: with fewer, a cycle has no shape."""
 
+FEWEST_A_CYCLE, LEAST_TOLD = 6, 4
+"""Fewest samples of a cycle: with fewer, its rate is known to some per cent only (`motion.smoothed`: 1 % with 6, 4 % with
+5). And the number of samples below which `samples_per_cycle` cannot tell it."""
+
 FEWEST_SAMPLES = 100
 """Fewest samples of all recordings: fewer cannot distinguish the effects from each other and from the noise."""
 
@@ -96,9 +100,14 @@ def check_signal(
             raise PoorRecording(
                 f"the deflection of recording {name} is noise only; check that the displacement sensor was connected"
             )
-        if float(np.sqrt(np.mean(_steps_in_motion(motion.deflection) ** 2))) > unrelated:
+        if (samples := samples_per_cycle(motion.deflection)) < FEWEST_A_CYCLE:
+            few = (
+                f"about {samples} samples per cycle"
+                if samples > LEAST_TOLD
+                else "four samples per cycle or fewer"
+            )
             raise PoorRecording(
-                f"recording {name} has about one sample per cycle; sample each cycle at {FEWEST_STEPS} or more points"
+                f"recording {name} has {few}; sample each cycle at {FEWEST_STEPS} or more points"
             )
         if beside and record.two_sided:
             continue
@@ -122,12 +131,23 @@ def check_signal(
             )
 
 
+def samples_per_cycle(deflection: FloatArray) -> int:
+    """Return the number n of samples in a cycle, to the nearest integer: the steps between samples of a sine have the
+    root mean square 2 sin(pi / n) of its deviation, those of readings that have nothing to do with each other that of
+    n = 4, LEAST_TOLD.
+    """
+    turned = float(np.sqrt(np.mean(_steps_in_motion(deflection) ** 2))) / (2.0 * float(np.std(deflection)))
+    samples = np.pi / np.arcsin(np.clip(turned, 1.0 / deflection.size, 1.0))
+    return max(round(float(samples)), LEAST_TOLD)
+
+
 def _steps_in_motion(deflection: FloatArray) -> FloatArray:
-    """Return the sizes of the steps between samples, each at most as large as its larger neighbour: a single step
-    between two holds is no cycle that is sampled too seldom.
+    """Return the sizes of the steps between samples; one beside which both others are NEGLIGIBLE counts as the larger of
+    these: a single step between two holds is no cycle that is sampled too seldom.
     """
     steps = np.pad(np.abs(np.diff(deflection)), 1)
-    return np.asarray(np.minimum(steps[1:-1], np.maximum(steps[:-2], steps[2:])))
+    beside = np.maximum(steps[:-2], steps[2:])
+    return np.where(beside < NEGLIGIBLE * steps[1:-1], beside, steps[1:-1])
 
 
 def _related(force: FloatArray, causes: Sequence[FloatArray], path: FloatArray) -> float:

@@ -26,6 +26,7 @@ from tirelab.preprocessing.data_checks import (
     copies_told,
     not_compared,
     outliers_told,
+    samples_per_cycle,
     spikes,
 )
 from tirelab.preprocessing.samples import raw_dataset_of
@@ -112,6 +113,15 @@ def test_two_held_out_samples_judge_nothing() -> None:
         check_recordings([recording()], [recording(**first(2))])
 
 
+@pytest.mark.parametrize("count", [4, 5, 6, 8, 13, 50])
+def test_the_samples_of_a_cycle_are_counted(count: int) -> None:
+    assert samples_per_cycle(np.sin(2.0 * np.pi / count * np.arange(40.0 * count))) == count
+
+
+def test_single_steps_between_holds_are_no_cycles() -> None:
+    assert samples_per_cycle(np.repeat([0.0, 1.0, 0.0, 1.0], 50)) > 50
+
+
 @pytest.mark.parametrize(
     ("channels", "reason"),
     [
@@ -124,8 +134,12 @@ def test_two_held_out_samples_judge_nothing() -> None:
             "does not follow its deflection (correlation",
         ),
         (
-            {"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 13.0 * TIME))},
-            "recording bad.csv has about one sample per cycle",
+            {"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 19.0 * TIME))},
+            "recording bad.csv has about 5 samples per cycle; sample each cycle at 8 or more points",
+        ),
+        (
+            {"deflection": 10e-3 * (1.0 - np.cos(2.0 * np.pi * 23.0 * TIME))},
+            "recording bad.csv has four samples per cycle or fewer",
         ),
     ],
 )
