@@ -33,8 +33,8 @@ FEWEST_STEPS = 8
 """Fewest distinct deflections of a recording that moves most of the time: with fewer, a cycle has no shape."""
 
 FEWEST_A_CYCLE, LEAST_TOLD = 6, 4
-"""Fewest samples of a cycle: with fewer, its rate is known to some per cent only (`motion.smoothed`: 1 % with 6, 4 % with
-5). And the number of samples below which `samples_per_cycle` cannot tell it."""
+"""Fewest samples of a cycle: with fewer, its rate is known to some per cent only (`motion.smoothed`: to 1 % with 6, to
+4 % with 5). And the number of samples below which `samples_per_cycle` cannot tell it."""
 
 FEWEST_SAMPLES = 100
 """Fewest samples of all recordings: fewer cannot distinguish the effects from each other and from the noise."""
@@ -142,8 +142,8 @@ def samples_per_cycle(deflection: FloatArray) -> int:
 
 
 def _steps_in_motion(deflection: FloatArray) -> FloatArray:
-    """Return the sizes of the steps between samples; one beside which both others are NEGLIGIBLE counts as the larger of
-    these: a single step between two holds is no cycle that is sampled too seldom.
+    """Return the sizes of the steps between samples; one beside which both others are NEGLIGIBLE counts as the larger
+    of these: a single step between two holds is no cycle that is sampled too seldom.
     """
     steps = np.pad(np.abs(np.diff(deflection)), 1)
     beside = np.maximum(steps[:-2], steps[2:])

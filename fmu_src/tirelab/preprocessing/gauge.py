@@ -2,9 +2,10 @@
 
 A gauge that reads in steps of q errs by up to q / 2 either way, with the standard deviation q / sqrt(12) (B. Widrow,
 I. Kollar, "Quantization Noise", Cambridge 2008, chapter 5). Random noise of variance s^2 gives fifth differences of
-variance 252 s^2, to which a smooth motion adds next to nothing. They do not show the steps where the motion is slow,
-because most readings repeat the last one, or where it is nearly even, because most steps are alike. Of readings that
-are not even in time they show how uneven these are. Noise then counts where it turns the motion to and fro.
+variance 252 s^2, to which a smooth motion adds next to nothing, and one of few samples a cycle nothing above five
+samples a cycle (`HIGH_PASS`). They do not show the steps where the motion is slow, because most readings repeat the
+last one, or where it is nearly even, because most steps are alike. Of readings that are not even in time they show how
+uneven these are. Noise then counts where it turns the motion to and fro.
 
 `gauge_step` finds a step by its rounding, beside which most readings may differ. `staircase_step` finds one so coarse
 that readings repeat: its stays and jumps are removed from the deflection (`destepped`) before a rate is taken.
@@ -35,6 +36,26 @@ GRID_TOLERANCE = 0.25
 """Largest distance of a reading from the grid of steps, as a part of a step: a file rounds what a gauge has read."""
 
 
+FIFTH = (1.0, -5.0, 10.0, -10.0, 5.0, -1.0)
+"""Weights of fifth differences."""
+
+HALF, HIGHEST, STOPPED = 15, 0.3, 7.9
+"""Samples on either side, frequency [1/sample] and Kaiser's beta of a window that halves what has this frequency, and
+stops all but 1e-4 of what has five samples a cycle or more (J. F. Kaiser, Proc. IEEE ISCAS (1974) 20)."""
+
+
+def _high_pass() -> FloatArray:
+    """Return the weights of fifth differences of what has less than five samples a cycle, of a sum of squares of 1."""
+    place = np.arange(HALF + 1 + HALF) - HALF
+    passed = 2.0 * HIGHEST * np.sinc(2.0 * HIGHEST * place) * np.kaiser(place.size, STOPPED)
+    weights = np.convolve(FIFTH, (place == 0) - passed / passed.sum())
+    return np.asarray(weights / np.linalg.norm(weights))
+
+
+HIGH_PASS = _high_pass()
+"""Weights of what is left of readings for their noise where a cycle of the motion has few samples."""
+
+
 def deflection_noise(deflection: FloatArray, *, timed: bool = True) -> float:
     """Return the standard deviation [m] of the noise of readings (n,) [m], n >= 6; at least 1e-9 m, or a millionth of
     their span where that is less.
@@ -43,13 +64,23 @@ def deflection_noise(deflection: FloatArray, *, timed: bool = True) -> float:
     Readings rounded to steps q without other noise have q / sqrt(12), those with other noise at least that.
     """
     least = LEAST_NOISE * _shrunk(deflection)
-    random = robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0) if timed or _trembles(deflection) else 0.0
+    random = _random_noise(deflection) if timed or _trembles(deflection) else 0.0
     step = gauge_step(deflection)
     rounding = step / np.sqrt(12.0)
     # A smooth motion that is only rounded has second differences of -q, 0 and q.
     if step > 0.0 and np.mean(np.abs(np.diff(deflection, 2)) > 1.5 * step) < NEGLIGIBLE:
         return float(max(rounding, least))
     return float(max(random, rounding, least))
+
+
+def _random_noise(deflection: FloatArray) -> float:
+    """Return the standard deviation [m] of what is random in readings that are even in time."""
+    random = float(robust_sigma(np.diff(deflection, 5)) / np.sqrt(252.0))
+    if deflection.size < 2 * HIGH_PASS.size:
+        return random
+    above = float(robust_sigma(np.convolve(deflection - deflection.mean(), HIGH_PASS, mode="valid")))
+    # Other noise than white has less there too; most of the differences has to be the motion's.
+    return above if above < 0.5 * random else random
 
 
 def read_again(

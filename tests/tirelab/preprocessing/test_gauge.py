@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfilt
 from tirelab.preprocessing.gauge import (
     LEAST_NOISE,
     deflection_noise,
@@ -134,6 +135,22 @@ def test_random_noise_is_measured(sigma: float) -> None:
     time = np.arange(0.0, DURATION, 0.01)
     noise = sigma * np.random.default_rng(3).standard_normal(time.size)
     assert deflection_noise(sine(time, 0.0413) + noise) == pytest.approx(sigma, rel=0.05)
+
+
+@pytest.mark.parametrize("period", [5.3, 6.4, 8.7, 16.3, 40.0])
+def test_a_sine_of_few_samples_a_cycle_is_no_noise(period: float) -> None:
+    """Its fifth differences are (2 sin(pi / n))^5 of it, 2 % of the stroke in the shortest."""
+    k, sigma = np.arange(3000), 2e-7
+    readings = 8e-3 * np.sin(2.0 * np.pi * k / period) + np.random.default_rng(4).normal(0.0, sigma, k.size)
+    assert deflection_noise(readings) == pytest.approx(sigma, rel=0.1)
+
+
+@pytest.mark.parametrize(("order", "cutoff"), [(1, 0.05), (1, 0.3), (2, 0.05), (2, 0.3)])
+def test_noise_behind_a_filter_keeps_that_of_its_fifth_differences(order: int, cutoff: float) -> None:
+    white = np.random.default_rng(5).normal(0.0, 1e-5, 6000)
+    readings = sosfilt(butter(order, 2.0 * cutoff, output="sos"), white)
+    fifth = np.std(np.diff(readings, 5)) / np.sqrt(252.0)
+    assert deflection_noise(5e-3 * np.sin(0.01 * np.arange(6000)) + readings) == pytest.approx(fifth, rel=0.1)
 
 
 @pytest.mark.parametrize("scale", [1e-4, 1e-3, 1.0])
