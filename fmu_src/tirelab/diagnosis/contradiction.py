@@ -53,6 +53,7 @@ class Contradiction:
     inflated: whether they are of tires, which have a pressure, and not of parts
     other: the name of the other one where there is one only; one_series: whether they are parts of one file, so that
     gauges and specimen are the same; held_out: whether it is held out, so that the verdict is that of the others
+    named: whether the verdict beside it names an effect
     """
 
     names: tuple[str, ...]
@@ -64,15 +65,19 @@ class Contradiction:
     other: str = ""
     one_series: bool = False
     held_out: bool = False
+    named: bool = True
 
     @property
     def question(self) -> str:
         """What the confidence of the verdict is a probability of."""
-        return (
-            "That it holds for the fitted ones"
-            if self.held_out
-            else "That one explanation holds for all of them"
-        )
+        if self.held_out:
+            return "That it holds for the fitted ones"
+        return f"That {'one explanation holds for' if self.named else 'no known effect explains'} all of them"
+
+    @property
+    def is_all(self) -> bool:
+        """Whether nothing else is to be said of the fitted recordings together."""
+        return not (self.held_out or self.named)
 
     @property
     def caution(self) -> str:

@@ -58,6 +58,7 @@ from .summary import (
     other_law,
     slow_noise,
     summarise,
+    together,
 )
 from .verdict import FitErrors, NotNamed, Verdict
 
@@ -247,7 +248,9 @@ def _judged(
         replace(e, probability=EITHER * e.probability) if e.name in replaced else e for e in accepted.effects
     )
     effects = no_surer_than_alternatives(tuple(halved), alternatives)
-    effects = effects if contradiction is None else contradiction.no_surer(effects)
+    if contradiction is not None:
+        effects = contradiction.no_surer(effects)
+        contradiction = replace(contradiction, named=bool(effects))
     before = asked.before.judged(fit)
     confidence *= before.probability
     of_all = before.beside(effects, alternatives, fit)
@@ -298,12 +301,15 @@ def _sentences(
     told = copies_told(data.fitted, data.kept)
     told += [] if judged.contradiction is None else [judged.contradiction.sentences]
     fit, baseline, of_found = judged.fit, data.baseline, (judged.effects, judged.alternatives, left.models)
+    noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
+    slow = slow_noise(data.fitted, explanation.noise_free, noises)
+    if judged.contradiction is not None and judged.contradiction.is_all:
+        return [*told, together(judged.contradiction.question, judged.confidence, fit), *slow]
     told.append(summarise(*of_found, judged.confidence, fit, test))
     told += judged.before.told(fit)
     told += before_simulation(judged.of_law, judged.before.tried) if judged.of_law else []
     told += not_seen(left.remainder.uncompared, left.models) if left.unexplained else []
-    noises = [e.reading for e in explanation.model.fit.problem.dataset.experiments]
-    told += slow_noise(data.fitted, explanation.noise_free, noises)
+    told += slow
     told += other_law(fit.after, left.models) if baseline.is_part and baseline.curve is None else []
     if baseline.is_part and left.unexplained:
         told += law_of_first_loading(data.fitted, data.residuals, explanation.residuals)

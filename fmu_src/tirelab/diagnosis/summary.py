@@ -34,6 +34,7 @@ from ..report.words import (
     beside_alternatives,
     confidence_word,
     is_undecided,
+    percent,
 )
 from ..simulation.simulate import upstream_names
 from .alternatives import Alternative
@@ -84,6 +85,16 @@ def summarise(
     if test is not None and not test.sufficient:
         said.append(test.sentence)
     return " ".join(said)
+
+
+def together(question: str, confidence: float, fit: FitErrors) -> str:
+    """Return the verdict on recordings that contradict each other, where it names nothing; question: see
+    `Contradiction`.
+    """
+    error, noise = newtons(fit.before), newtons(fit.noise)
+    return (
+        f"Of all together the RMS error is {error}; the noise is {noise}. {question}: {percent(confidence)}."
+    )
 
 
 def _undecided(effects: Sequence[NamedEffect], alternatives: Sequence[Alternative], confidence: float) -> str:

@@ -143,6 +143,29 @@ def test_its_message_says_what_to_do() -> None:
     )
 
 
+def test_a_verdict_that_names_nothing_is_sure_that_nothing_explains_all_of_them() -> None:
+    found = Contradiction(("b",), ("viscous_damping",), 2.0, 118.7)
+    assert found.question == "That one explanation holds for all of them"
+    assert not found.is_all
+    unnamed = replace(found, named=False)
+    assert unnamed.question == "That no known effect explains all of them"
+    assert unnamed.is_all
+    # What is said of the fitted recordings holds whatever a held-out one does.
+    assert replace(unnamed, held_out=True).question == "That it holds for the fitted ones"
+    assert not replace(unnamed, held_out=True).is_all
+
+
+def test_where_several_zeros_are_all_there_is_the_summary_speaks_of_nothing_else() -> None:
+    plain = pressed("a", 1), pressed("b", 2), pressed("c", 3)
+    shifts = (-40.0, 0.0, 40.0)
+    verdict = verdict_on(*(replace(r, force=r.force + shift) for r, shift in zip(plain, shifts, strict=True)))
+    assert verdict.contradiction is not None
+    assert verdict.names == ("unknown",)
+    assert "That no known effect explains all of them" in verdict.summary
+    assert "Something is missing" not in verdict.summary
+    assert "cannot rule out" not in verdict.summary
+
+
 @pytest.mark.slow
 def test_of_parts_without_air_no_pressure_is_spoken_of() -> None:
     spring = TireModel(PowerLaw(550.0, 1.42), tested_range=None, inflated=False)
