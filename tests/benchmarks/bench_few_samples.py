@@ -127,7 +127,7 @@ def cases(seed: int) -> Iterator[tuple[str, str, float, Recording]]:
         size = float(np.sqrt(np.mean(force**2)))
         force = force + noise * size * random.standard_normal(COUNT)
         read = read + 0.1 * noise * 0.02 * random.standard_normal(COUNT)
-        yield effect, name, noise, Recording.from_arrays(STEP * np.arange(COUNT), read, force)
+        yield effect, name, noise, Recording.from_arrays(STEP * np.arange(COUNT), read, force, "flat")
 
 
 def main() -> int:
