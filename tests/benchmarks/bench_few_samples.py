@@ -55,8 +55,8 @@ def sweep() -> FloatArray:
 
 
 def road(random: np.random.Generator) -> FloatArray:
-    """Return a random motion of 200 to 17 samples a cycle."""
-    own = sosfilt(butter(2, [0.01, 0.12], "bandpass", output="sos"), random.standard_normal(COUNT))
+    """Return a random motion of 200 to 17 samples a cycle, with next to nothing beyond."""
+    own = sosfilt(butter(6, [0.01, 0.12], "bandpass", output="sos"), random.standard_normal(COUNT))
     return np.asarray(MIDDLE + STROKE * own / np.abs(own).max())
 
 

@@ -36,8 +36,8 @@ def print_diagnosis(console: Console, diagnosis: Mapping[str, Any], out: Path) -
         sections.append([_regressions(verdict["corrections"])])
     if verdict.get("alternative_details"):
         sections.append([_alternatives(verdict["alternative_details"])])
-    if verdict["effects"]:
-        sections.append([_look_alikes(verdict)])
+    if outside := look_alikes(verdict):
+        sections.append([_look_alikes(outside)])
     for section in sections:
         console.print(*section, sep="\n")
         console.print()
@@ -118,9 +118,9 @@ def _alternatives(details: Sequence[Mapping[str, Any]]) -> Table:
     return others
 
 
-def _look_alikes(verdict: Mapping[str, Any]) -> Table:
+def _look_alikes(outside: Sequence[tuple[str, str, str]]) -> Table:
     others = _table("not in the catalogue, leaves the same", "in place of", "what tells it")
-    for title, what, check in look_alikes(verdict):
+    for title, what, check in outside:
         others.add_row(what, title, check)
     return others
 

@@ -78,6 +78,12 @@ def test_what_could_control_a_terminal_is_a_question_mark() -> None:
     assert printable("a\x1b[31mb\tc\n轮胎") == "a?[31mb?c?轮胎"
 
 
+def test_what_no_catalogue_holds_is_printed_beside_what_is_named(kinds: dict[str, Any]) -> None:
+    text = printed(kinds["alternatives"].diagnosis)
+    assert "friction in the guides of the machine friction loop press a steel spring in its place" in text
+    assert "leaves the same" not in printed(kinds["nothing"].diagnosis)
+
+
 def test_alternatives_and_the_refitted_law_are_printed_as_people_know_them(kinds: dict[str, Any]) -> None:
     text = printed(kinds["alternatives"].diagnosis)
     assert "viscous damping instead of friction loop 30 % repeat at 30 mm/s" in text
