@@ -29,7 +29,8 @@ from types import CodeType, ModuleType
 from typing import Any
 
 import click
-from constants import BOUNDS, TOGETHER, constants
+from constant_kinds import BOUNDS
+from constants import TOGETHER, constants
 
 FACTORS = (0.5, 2.0)
 SCALED = "_scaled_by_the_sensitivity"

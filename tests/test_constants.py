@@ -4,17 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from constants import (
-    ARITHMETIC,
-    BESIDE,
-    BOUNDS,
-    DERIVED,
-    EFFORT,
-    PRIOR,
-    constants,
-    page,
-    within_functions,
-)
+from constant_kinds import ARITHMETIC, BESIDE, BOUNDS, DERIVED, EFFORT, PRIOR
+from constants import constants, page, within_functions
 
 PAGE = Path(__file__).parents[1] / "examples" / "docs" / "constants.md"
 

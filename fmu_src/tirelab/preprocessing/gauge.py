@@ -36,9 +36,6 @@ GRID_TOLERANCE = 0.25
 """Largest distance of a reading from the grid of steps, as a part of a step: a file rounds what a gauge has read."""
 
 
-FIFTH = (1.0, -5.0, 10.0, -10.0, 5.0, -1.0)
-"""Weights of fifth differences."""
-
 HALF, HIGHEST, STOPPED = 15, 0.3, 7.9
 """Samples on either side, frequency [1/sample] and Kaiser's beta of a window that halves what has this frequency, and
 stops all but 1e-4 of what has five samples a cycle or more (J. F. Kaiser, Proc. IEEE ISCAS (1974) 20)."""
@@ -48,7 +45,7 @@ def _high_pass() -> FloatArray:
     """Return the weights of fifth differences of what has less than five samples a cycle, of a sum of squares of 1."""
     place = np.arange(HALF + 1 + HALF) - HALF
     passed = 2.0 * HIGHEST * np.sinc(2.0 * HIGHEST * place) * np.kaiser(place.size, STOPPED)
-    weights = np.convolve(FIFTH, (place == 0) - passed / passed.sum())
+    weights = np.diff(np.pad((place == 0) - passed / passed.sum(), 5), 5)
     return np.asarray(weights / np.linalg.norm(weights))
 
 
