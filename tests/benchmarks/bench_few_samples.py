@@ -3,8 +3,8 @@
     python tests/benchmarks/bench_few_samples.py --seed 5 [--effect inertia] [--motion sine]
 
 Each effect is computed here from its equation on a motion twenty times as fine as the samples that are kept, beside
-the law of the article on flat ground, 4 % of the force (root mean square), with a noise of 0.3 % and of 0.01 % of it and a
-gauge as good. A verdict is right that names the effect above 50 % and no other; a refitted law beside it counts as none.
+the law of the article on flat ground, 4 % of the force (root mean square), with a noise of 0.3 % and of 0.01 % of it
+and a gauge as good. A verdict is right that names the effect above 50 % and no other; a refitted law counts as none.
 In a sine of one frequency a mass may be another law, and a late force a damper, so not all can be told.
 """
 
