@@ -28,6 +28,9 @@ FloatArray = NDArray[np.float64]
 COUNT, STEP, FINER = 1500, 0.01, 20
 """Samples of a recording, their interval [s], and the fine instants of the simulation in each."""
 
+INSTANTS = np.linspace(0.0, COUNT - 1.0, (COUNT - 1) * FINER + 1)
+"""Fine instants of the simulation [samples]."""
+
 MIDDLE, STROKE = 0.012, 0.008
 """Middle and half the stroke of the deflection [m]."""
 
@@ -60,14 +63,28 @@ def road(random: np.random.Generator) -> FloatArray:
     return np.asarray(MIDDLE + STROKE * own / np.abs(own).max())
 
 
+def triangle(samples: float) -> FloatArray:
+    """Return a triangle of so many samples a cycle, with its corners between them, at the fine instants."""
+    phase = (INSTANTS / samples + 0.13) % 1.0
+    return np.asarray(MIDDLE + STROKE * (1.0 - 2.0 * np.abs(2.0 * phase - 1.0)))
+
+
+def fine(motion: FloatArray) -> FloatArray:
+    """Return the motion at the fine instants of one that is smooth between the samples."""
+    return np.asarray(CubicSpline(np.arange(COUNT), motion)(INSTANTS))
+
+
 MOTIONS: dict[str, Callable[[np.random.Generator], FloatArray]] = {
-    "sine of 6.4": lambda random: sine(6.4),
-    "sine of 8.7": lambda random: sine(8.7),
-    "sine of 16.3": lambda random: sine(16.3),
-    "six sines": lambda random: sines(),
-    "sweep": lambda random: sweep(),
-    "road": road,
+    "sine of 6.4": lambda random: fine(sine(6.4)),
+    "sine of 8.7": lambda random: fine(sine(8.7)),
+    "sine of 16.3": lambda random: fine(sine(16.3)),
+    "six sines": lambda random: fine(sines()),
+    "sweep": lambda random: fine(sweep()),
+    "road": lambda random: fine(road(random)),
+    "triangle of 20": lambda random: triangle(20.0),
+    "triangle of 40.3": lambda random: triangle(40.3),
 }
+"""Motions at the fine instants, by name."""
 
 
 def law(deflection: FloatArray) -> FloatArray:
@@ -93,11 +110,13 @@ def slipping(deflection: FloatArray) -> FloatArray:
 
 
 def driven(effect: str, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return deflection [m] as read and force [N] at the samples, with an effect, without noise."""
-    fine = CubicSpline(np.arange(COUNT), motion)(np.linspace(0.0, COUNT - 1.0, (COUNT - 1) * FINER + 1))
-    rate = np.gradient(fine)
-    acceleration, force = np.gradient(rate), law(fine)
-    size, read = float(np.sqrt(np.mean(force**2))), fine
+    """Return deflection [m] as read and force [N] at the samples, with an effect, without noise.
+
+    motion: at the fine instants
+    """
+    rate = np.gradient(motion)
+    acceleration, force = np.gradient(rate), law(motion)
+    size, read = float(np.sqrt(np.mean(force**2))), motion
 
     def sized(response: FloatArray) -> FloatArray:
         return np.asarray(SIZE * size * response / np.sqrt(np.mean(response**2)))
@@ -107,11 +126,11 @@ def driven(effect: str, motion: FloatArray) -> tuple[FloatArray, FloatArray]:
     elif effect == "inertia":
         force = force + sized(acceleration)
     elif effect == "rate_independent_hysteresis":
-        force = force * (1.0 + SIZE * slipping(fine))
+        force = force * (1.0 + SIZE * slipping(motion))
     elif effect in ("force_lag", "deflection_lag"):
         constant = SIZE * size / float(np.sqrt(np.mean(np.gradient(force) ** 2)))
         read, force = (
-            (late(fine, constant), force) if effect == "deflection_lag" else (fine, late(force, constant))
+            (late(motion, constant), force) if effect == "deflection_lag" else (motion, late(force, constant))
         )
     return read[::FINER], force[::FINER]
 

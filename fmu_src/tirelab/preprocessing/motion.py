@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
 from scipy.linalg import solveh_banded
-from scipy.ndimage import gaussian_filter1d, median_filter
+from scipy.ndimage import binary_closing, gaussian_filter1d, median_filter
 
 from .gauge import deflection_noise
 from .noise import NEGLIGIBLE, STANDS_OUT
@@ -49,8 +49,14 @@ sample."""
 CORNER_SAMPLES = 6
 """Most samples in which one corner shows."""
 
-SHORTEST = 2 * CORNER_SAMPLES + 1
-"""Fewest samples of a piece between two corners: those in which the two show, and one more."""
+SHORTEST = CORNER_SAMPLES + 1
+"""Fewest samples of a piece between two corners: half of those in which each shows, and one more."""
+
+SHORTEST_END = CORNER_SAMPLES // 2 + 1
+"""Fewest samples of a piece between a corner and an end of the recording; in a shorter one no rate is known."""
+
+AROUND = 4 * CORNER_SAMPLES + 1
+"""Samples around one among which it stands out as a corner: those in which four show."""
 
 MOST_PIECES = 1000
 """Budget: most pieces that are smoothed separately."""
@@ -124,7 +130,12 @@ def _smoothed(
     resolved = _resolved(deflection, noise)
     parts = np.zeros((3, deflection.size))
     for begin, end in _pieces(resolved):
-        parts[:, begin:end] = smoothed(deflection[begin:end], step, noise)
+        own = deflection[begin:end]
+        if own.size < min(SHORTEST_END, deflection.size):
+            parts[:2, begin:end] = own, np.gradient(own, step)
+            resolved[begin:end] = False
+        else:
+            parts[:, begin:end] = smoothed(own, step, noise)
     return parts[0], parts[1], parts[2], resolved
 
 
@@ -138,24 +149,24 @@ def _resolved(deflection: FloatArray, noise: float) -> BoolArray:
     outside = np.linalg.qr(np.eye(5) - basis @ basis.T)[0][:, 0]
     misfit = np.convolve(deflection - deflection.mean(), outside[::-1], mode="valid") ** 2
     least = max(CORNER * noise**2, (NEGLIGIBLE * travel) ** 2)
-    around = median_filter(misfit, 2 * SHORTEST + 1, mode="reflect")
+    around = median_filter(misfit, AROUND, mode="reflect")
     resolved[2:-2] = misfit < np.maximum(least, CORNER * around)
-    return resolved
+    # Five samples with a corner a third of a sample from the middle one follow a cubic all the same.
+    return np.asarray(~binary_closing(~resolved, np.ones(3)))
 
 
 def _pieces(resolved: BoolArray) -> list[tuple[int, int]]:
     """Return begin and end of the pieces of the motion between its corners; a spline overshoots beside a corner.
 
-    Pieces shorter than SHORTEST stay with their neighbours, as do longer unresolved parts, which are not one corner.
+    Pieces shorter than SHORTEST between two corners stay with their neighbours, as do longer unresolved parts, which
+    are not one corner.
     """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], ~resolved, [False]])))
     cuts = [0]
     for begin, end in edges.reshape(-1, 2).tolist():
         middle = (begin + end) // 2
-        if end - begin <= CORNER_SAMPLES and middle - cuts[-1] >= SHORTEST:
+        if end - begin <= CORNER_SAMPLES and (len(cuts) == 1 or middle - cuts[-1] >= SHORTEST):
             cuts.append(middle)
-    if resolved.size - cuts[-1] < SHORTEST and len(cuts) > 1:
-        cuts.pop()
     if len(cuts) > MOST_PIECES:
         cuts = [0]
     return list(zip(cuts, [*cuts[1:], resolved.size], strict=True))

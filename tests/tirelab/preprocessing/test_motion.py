@@ -143,6 +143,37 @@ def test_no_rate_rings_beside_a_corner() -> None:
     assert np.abs(motion.rate[beside] / rate[beside] - 1.0).max() < 0.05
 
 
+def short_triangles(count: int, side: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, deflection and rate of samples on branches of `side` samples at RATE, corners between samples."""
+    place = np.arange(count) + 0.3
+    way = place % (2.0 * side)
+    rate = np.where(way < side, RATE, -RATE)
+    return np.arange(count) * INTERVAL, RATE * INTERVAL * (side - np.abs(way - side)), rate
+
+
+@pytest.mark.parametrize("side", [10.0, 12.35, 15.15])
+def test_branches_of_few_samples_each_have_their_rate(side: float) -> None:
+    """Two corners show in three samples each of the piece between them; what is left knows its rate."""
+    time, deflection, rate = short_triangles(1500, side)
+    motion = motion_of(time, noisy(deflection, 1e-8))
+    wrong = motion.resolved & (np.abs(motion.rate / rate - 1.0) > 0.1)
+    # A corner on a sample shows in three of them, beside which a spline is bent: at most one in a turn.
+    assert np.count_nonzero(wrong) < 0.2 * time.size / side
+    assert np.count_nonzero(motion.resolved) > 0.5 * time.size
+
+
+@pytest.mark.parametrize("left", range(1, 14))
+def test_a_corner_near_an_end_bends_no_rate_there(left: int) -> None:
+    """A spline across the last corner had a rate of the wrong sign in the samples beside it."""
+    time, deflection, rate = short_triangles(20 * 20 + left, 20.0)
+    motion = motion_of(time, noisy(deflection, 1e-8))
+    back = motion_of(time, noisy(deflection[::-1], 1e-8))
+    for found, driven in ((motion, rate), (back, -rate[::-1])):
+        wrong = found.resolved & (np.abs(found.rate / driven - 1.0) > 0.1)
+        # In the last two samples no corner can be seen.
+        assert np.count_nonzero(wrong[2:-2]) == 0
+
+
 STEP = 0.005
 TIME = np.arange(4000) * STEP
 NOISE = 1e-5
