@@ -64,6 +64,21 @@ def test_a_gauge_that_does_not_follow_a_leak_contradicts_the_force() -> None:
     assert found.contradiction.refuted == ("pressure_leak",)
 
 
+def test_beside_a_channel_that_contradicts_the_force_nothing_is_said_to_be_missing_where_nothing_is_named() -> (
+    None
+):
+    pressure = 2e5 + 1e3 * np.random.default_rng(2).standard_normal(TIME.size)
+    found = diagnose(
+        replace(pressed(LEAK), pressure=pressure), catalogue=("pressure_leak", "viscous_damping")
+    )
+    assert isinstance(found.contradiction, ContradictingChannel)
+    assert not found.effects
+    # What is left of all, and what the confidence is a probability of, are all that is said beside it.
+    sure = f"That the pressure is right and this is all that acts: {100.0 * found.confidence:.0f} %."
+    assert sure in found.summary
+    assert not any(other in found.summary for other in ("Left out", "alternatives", "No physics"))
+
+
 def test_a_pressure_that_was_typed_in_refutes_no_leak() -> None:
     found = diagnose(replace(pressed(LEAK), pressure=np.full(TIME.size, 2e5)), catalogue=NAMES)
     assert [effect.name for effect in found.effects] == ["pressure_leak"]
