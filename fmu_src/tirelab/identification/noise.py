@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
 from scipy.linalg import matmul_toeplitz, solve_toeplitz
 
 from .power_fit import inner_products
@@ -118,7 +119,10 @@ def _power_fit(
         correlation = correlations[b.kin][:count]
         repeats = float(1.0 + 2.0 * ((1.0 - np.arange(1, count) / count) @ correlation[1:]))
         of_block = max(float(b.noise @ b.noise) / float(_expected(b, correlation, 0)[0]), b.noise_floor**2)
-        meat += of_block * b.scores.T @ matmul_toeplitz(correlation, b.scores)
+        scattered = b.scores.T @ matmul_toeplitz(correlation, b.scores)
+        if np.linalg.eigvalsh(scattered)[0] <= 0.0:
+            scattered = b.scores.T @ matmul_toeplitz(_possible(correlation), b.scores)
+        meat += of_block * scattered
         independent += min(count * (b.within + of_block) / (of_block * repeats), count * b.size)
         variance += (b.within + of_block) / len(blocks)
     inverse = np.linalg.inv(products)
@@ -209,6 +213,13 @@ def _autocorrelation(blocks: list[_Blocks]) -> NDArray[np.float64]:
         correlation = np.zeros(longest)
         correlation[0] = 1.0
     return correlation
+
+
+def _possible(correlation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the nearest autocorrelation whose spectrum is nowhere negative, of one that was corrected too far."""
+    around = np.concatenate([correlation, correlation[:0:-1]])
+    possible = irfft(np.maximum(rfft(around).real, 0.0), around.size)[: correlation.size]
+    return np.asarray(possible / possible[0])
 
 
 def _products(left: NDArray[np.float64], right: NDArray[np.float64], highest: int) -> NDArray[np.float64]:
