@@ -51,6 +51,7 @@ from .discriminating_test import DiscriminatingTest, limits_of_rig, recommended
 from .errors_left import FittedData, Left, left_by
 from .localization import Span, law_corrected, localize
 from .missed import missed_held_out
+from .sudden_change import sudden_change
 from .summary import (
     before_simulation,
     law_of_first_loading,
@@ -192,7 +193,7 @@ def _contradiction(
     data: FittedData, candidates: Explanation, accepted: _Accepted, explain: ExplainAnew
 ) -> Contradiction | None:
     """Return what speaks against the verdict: a fitted recording that contradicts the others, a difference between two
-    of them, a held-out recording, or a channel; the first that is found.
+    of them, a held-out recording, a change at once, or a channel; the first that is found.
     """
     explanation, fitted = accepted.explanation, data.fitted
 
@@ -204,6 +205,7 @@ def _contradiction(
         contradiction_of(explanation, fitted, data.motions, data.residuals, explain_fitted)
         or difference_between(clearest, fitted, data.motions, explain_fitted)
         or _contradicted_by_held_out(data, clearest)
+        or sudden_change(explanation, fitted, data.motions)
         or contradicting_channel(explanation, fitted, data.kept, explain)
     )
 
