@@ -28,6 +28,8 @@ BESIDE = (
     "diagnosis/discriminating_test",
     "diagnosis/localization",
     "diagnosis/simulation_correction.FORCE_FROM",
+    "diagnosis/sudden_change.ROUNDING",
+    "diagnosis/sudden_change.SHIFT",
     "preprocessing/samples.ROWS",
 )
 """Modules or numbers of these rooms that make what is shown beside a verdict: places, the next test, reasons."""
@@ -208,6 +210,7 @@ EFFORT = (
     "diagnosis/states_of_motion.SPEEDS_PER_OCTAVE",
     "diagnosis/contradiction.ANEW",
     "diagnosis/contradiction.SUSPECTED",
+    "diagnosis/sudden_change.MOST",
     "diagnosis/between_recordings.ROUNDS",
     "diagnosis/between_recordings.SETTLED",
     "diagnosis/between_recordings.STEP",

@@ -12,14 +12,15 @@ import pytest
 from concealed import IN_TURN, KINDS, WIDE_KINDS, Trial, answer_json, derived_right, draw
 from concealed.effects import BY_NAME
 from concealed.regressors import NAMES
+from concealed.wide.drawing import LACKING
 from concealed.wide.foreign import FOREIGN
 from concealed.wide.outside import OUTSIDE
 from concealed.wide.press import fitted_power_law
 from scipy.optimize import curve_fit
 
 COUNT = 3
-DRAWN = [pytest.param(kind, marks=pytest.mark.slow) if kind == "set" else kind for kind in WIDE_KINDS]
-"""The kinds; trials of a permanent set are drawn again so often that they take longest."""
+DRAWN = [pytest.param(kind, marks=pytest.mark.slow) if kind in LACKING else kind for kind in WIDE_KINDS]
+"""The kinds; trials of what the rig has no name for are drawn again so often that they take longest."""
 
 Drawn = Callable[[str], list[Trial]]
 
@@ -39,7 +40,7 @@ def drawn() -> Drawn:
 
 def test_wide_kinds_are_never_drawn_unasked() -> None:
     assert IN_TURN == ("loud", "press", "foreign", "outside", "beside")
-    assert WIDE_KINDS == ("loud", "press", "foreign", "outside", "pressure", "beside", "set")
+    assert WIDE_KINDS == ("loud", "press", "foreign", "outside", "pressure", "beside", "set", "drift")
     assert not set(WIDE_KINDS) & set(KINDS)
     assert sum(KINDS.values()) == pytest.approx(1.0)
 
@@ -55,7 +56,9 @@ def test_the_same_seed_gives_the_same_wide_trial(drawn: Drawn, kind: str) -> Non
 
 @pytest.mark.parametrize("kind", DRAWN)
 def test_the_true_set_comes_first_and_held_out_tests_are_of_both_sorts(drawn: Drawn, kind: str) -> None:
-    own = {"pressure": {"inflation_pressure"}, "set": {"permanent_set"}}.get(kind, set())
+    own = {"pressure": {"inflation_pressure"}, "set": {"permanent_set"}, "drift": {"deflection_drift"}}.get(
+        kind, set()
+    )
     beside = {"recalibration", *own}
     for trial in drawn(kind):
         truth = set(trial.answer.right[0]) - {"none", "unknown"}

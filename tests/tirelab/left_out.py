@@ -20,6 +20,7 @@ NOISE = 6.0
 
 PARAMETERS: dict[str, dict[str, float]] = {
     "deflection_offset": {"offset": 8e-4},
+    "deflection_drift": {"drift": -2e-5},
     "deflection_lag": {"lag": 0.01},
     "force_offset": {"offset": 45.0},
     "rate_independent_hysteresis": {"slip_force": 35.0, "load_share": 0.02},

@@ -21,11 +21,12 @@ from ..regressors import NAMES
 from ..tires import PowerTire
 from ..trial import Answer, Parameters, Record, Trial, recorded
 from . import press, pressure
+from .gauge_drift import DEFLECTION_DRIFT
 from .permanent import PERMANENT_SET
 from .worlds import WORLDS, World
 
 #: The kinds that are drawn only where they are asked for; their places decide what their seeds mean.
-WIDE_KINDS = ("loud", "press", "foreign", "outside", pressure.KIND, "beside", "set")
+WIDE_KINDS = ("loud", "press", "foreign", "outside", pressure.KIND, "beside", "set", "drift")
 #: Those of them of which a proof of all kinds draws in turn; which these are decides what its seeds mean.
 IN_TURN = ("loud", "press", "foreign", "outside", "beside")
 #: Streams of random numbers of these trials stand apart from those of the other kinds by this key.
@@ -37,8 +38,10 @@ STANDS_FOR = 0.5
 #: Where its family leaves more than this part, one more name beside the family may be right too.
 COMPLETED = 0.15
 REFIT = "recalibration"
-#: The kinds in which something acts that the rig's own forms cannot stand for: what no catalogue holds, or a set.
-UNKNOWN = ("outside", "beside", "set")
+#: What a catalogue has a name for and the rig's own forms cannot stand for, and the kinds that hide one of it.
+LACKED, LACKING = frozenset({PERMANENT_SET, DEFLECTION_DRIFT}), ("set", "drift")
+#: The kinds in which something acts that the rig's own forms cannot stand for, that or what no catalogue holds.
+UNKNOWN = ("outside", "beside", *LACKING)
 
 
 @dataclass(frozen=True)
@@ -145,12 +148,12 @@ def _is_fair(kind: str, world: World, linear: Explanations) -> bool:
     """
     if kind == "press":
         return True
-    base = set(world.names) - {PERMANENT_SET}
+    base = set(world.names) - LACKED
     truth = linear.loss(base)
     if kind in UNKNOWN:
         best = linear.best(base, 2)
-        # a set is told from others by little of what it changes
-        share = 0.0 if kind == "set" else BEYOND_SHARE
+        # a set or a drift is told from others by little of what it changes
+        share = 0.0 if kind in LACKING else BEYOND_SHARE
         if best <= BEYOND_CATALOGUE or best <= share * truth:
             return False
     if kind == "outside":
@@ -185,7 +188,7 @@ def _right(kind: str, world: World, linear: Explanations, found: Equivalent) -> 
         sets = [truth | {"unknown"}, frozenset({"unknown"})]
     elif kind == "beside":
         sets = [truth | {"unknown"}, truth - {REFIT} | {"unknown"}]
-    elif kind == "set":
+    elif kind in LACKING:
         sets = [truth]
     elif kind == "press":
         matters = linear.loss(truth - {REFIT}) - linear.loss(truth) >= SAME_TIRE_LOSS
@@ -207,4 +210,4 @@ def _named(world: World, baseline: PowerTire) -> dict[str, Parameters]:
 
 def _is_named(name: str) -> bool:
     """Whether a catalogue has a name for an effect."""
-    return name in BY_NAME or name == PERMANENT_SET
+    return name in BY_NAME or name in LACKED

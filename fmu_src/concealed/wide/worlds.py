@@ -17,6 +17,7 @@ from ..sizing import Size, misfit_size
 from ..tires import PowerTire, Tire, contact_patch_tire, deviating_tire, fitted_table
 from . import press
 from .foreign import FOREIGN
+from .gauge_drift import DEFLECTION_DRIFT, DRIFTING
 from .laws import drawn_law
 from .outside import OUTSIDE, StiffeningTread
 from .permanent import PERMANENT, PERMANENT_SET
@@ -112,17 +113,29 @@ def beside(rng: np.random.Generator, turn: int) -> World | None:
 
 def permanent(rng: np.random.Generator, turn: int) -> World | None:
     """A part that keeps some of its deflection, 5 to 300 times the noise, every other time beside another effect."""
-    form = PERMANENT[turn % len(PERMANENT)]
-    others = (str(rng.choice([name for name in NAMES if name != "recalibration"])),)
-    names = (PERMANENT_SET, *(others if turn // len(PERMANENT) % 2 else ()))
-    plan = Plan("single", names, None, False, False)
-    setup = as_baseline(drawn_setup(rng, plan), plan)
-    forms = [form, *(BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in names[1:])]
-    world = of_plan(rng, plan, setup, forms, (STRANGE, (QUIETER, 1.0)))
+    world = _of_form(rng, turn, PERMANENT_SET, PERMANENT)
     # what stays is of the deflection alone: on another surface its force at the deepest point is not known
     if world is None or any(len(motion.surfaces) > 1 for motion in (*world.train, *world.heldout)):
         return None
     return world
+
+
+def drifting(rng: np.random.Generator, turn: int) -> World | None:
+    """A gauge whose zero drifts, 5 to 300 times the noise, every other time beside another effect."""
+    return _of_form(rng, turn, DEFLECTION_DRIFT, DRIFTING)
+
+
+def _of_form(rng: np.random.Generator, turn: int, name: str, named: tuple[type[Effect], ...]) -> World | None:
+    """A world of what `NAMES` lacks, its forms in turn, every other time beside another effect."""
+    others = (str(rng.choice([other for other in NAMES if other != "recalibration"])),)
+    names = (name, *(others if turn // len(named) % 2 else ()))
+    plan = Plan("single", names, None, False, False)
+    setup = as_baseline(drawn_setup(rng, plan), plan)
+    forms = [
+        named[turn % len(named)],
+        *(BY_NAME[n][int(rng.integers(len(BY_NAME[n])))] for n in names[1:]),
+    ]
+    return of_plan(rng, plan, setup, forms, (STRANGE, (QUIETER, 1.0)))
 
 
 def first_file(rng: np.random.Generator, turn: int) -> World | None:
@@ -155,6 +168,7 @@ WORLDS: Mapping[str, Callable[[np.random.Generator, int], World | None]] = {
     "outside": outside,
     "beside": beside,
     "set": permanent,
+    "drift": drifting,
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..effect import Effect
 from .bottoming import BOTTOMING
+from .deflection_drift import DEFLECTION_DRIFT
 from .deflection_lag import DEFLECTION_LAG
 from .deflection_offset import DEFLECTION_OFFSET
 from .elastic_shape import ELASTIC_SHAPE
@@ -28,6 +29,7 @@ CATALOGUE: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         DEFLECTION_OFFSET,
+        DEFLECTION_DRIFT,
         DEFLECTION_LAG,
         PERMANENT_SET,
         SERIES_COMPLIANCE,

@@ -58,9 +58,11 @@ FORCE_DRIFT = Effect(
     respond=respond,
     statement="the force drifts, alike at every deflection: the zero of the load cell moves, or the part creeps",
     tell_tale="the residual grows with time by the same amount at every deflection, also without contact",
-    imitators=("pressure_leak", "warm_up", "force_offset"),
+    imitators=("pressure_leak", "warm_up", "deflection_drift", "force_offset"),
     source="warm-up drift of an amplifier, at first a straight line; magnitudes are in its data sheet, bounds wide",
-    look_alike=LookAlike("a fixture that settles", "read the force in the air, before and after"),
+    look_alike=LookAlike(
+        "a cable that pulls at the load cell", "move the cable and read the force in the air"
+    ),
     traits=("slow", "reading"),
     form_error=0.001,
 )

@@ -26,7 +26,7 @@ TABLE_WIDTH = 110
     type=click.Choice(
         [
             *("none", "single", "masked", "pair", "triple", "open"),
-            *("loud", "press", "foreign", "outside", "beside", "pressure", "set", "all"),
+            *("loud", "press", "foreign", "outside", "beside", "pressure", "set", "drift", "all"),
         ]
     ),
     help="Draw only one kind of trial: nothing hidden, one effect, one effect on another tire, two effects, three, or "

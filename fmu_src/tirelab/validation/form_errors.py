@@ -116,10 +116,10 @@ def form_errors_of(errors: Mapping[str, Sequence[float]]) -> dict[str, float]:
 @click.option("--only", help="One effect.")
 @click.option(
     "--kind",
-    type=click.Choice(["loud", "set"]),
+    type=click.Choice(["loud", "set", "drift"]),
     default="loud",
     show_default=True,
-    help="Trials that hide it: set holds a permanent set.",
+    help="Trials that hide it: set holds a permanent set, drift a drifting gauge.",
 )
 def main(seed: int, draws: int, only: str | None, kind: str) -> None:
     """Print the form error of every effect that was drawn alone, and from how many draws."""

@@ -140,6 +140,8 @@ REQUIREMENTS: tuple[Requirement, ...] = (
     ("pressure", "held-out misfit at most a quarter", corrected, 0.90),
     ("set", "all hidden effects named and nothing else but a remainder", sound, 0.90),
     ("set", "held-out misfit at most a quarter", corrected, 0.90),
+    ("drift", "all hidden effects named and nothing else but a remainder", sound, 0.90),
+    ("drift", "held-out misfit at most a quarter", corrected, 0.90),
 )
 """Kind, figure, what a trial has to meet, and the least rate."""
 

@@ -387,6 +387,18 @@ static inline Tuple8 deflection_offset_respond(double signal, Instant instant, N
     return (Tuple8){signal + values.v[0], state};
 }
 
+/* effects.deflection_drift.py: Shift the deflection [m] by the drift since the start. */
+static inline Tuple8 deflection_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
+{
+    double drift = values.v[0], settling = values.v[1];
+    double settled = settling * instant.time;
+    double duration = instant.time;
+    if (settled > 1e-09) {
+        duration *= -expm1(-settled) / settled;
+    }
+    return (Tuple8){signal + drift * duration, state};
+}
+
 /* effects.deflection_lag.py: Advance the deflection [m] by the lag of its channel. */
 static inline Tuple8 deflection_lag_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
@@ -420,13 +432,17 @@ static inline double through_deflection(double signal, Instant at, const double 
         signal = t1.a;
     }
     if (p[10] != 0.0) {
-        const Tuple8 t2 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[11], p[12]}});
+        const Tuple8 t2 = deflection_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[11], p[12]}});
         signal = t2.a;
     }
     if (p[13] != 0.0) {
-        const Tuple11 t3 = permanent_set_respond(signal, at, (Vector1){{s[6]}}, *(const Vector4 *)(p + 14));
+        const Tuple8 t3 = deflection_lag_respond(signal, at, (Nothing){0}, (Vector2){{p[14], p[15]}});
         signal = t3.a;
-        Vector1 after = t3.b;
+    }
+    if (p[16] != 0.0) {
+        const Tuple11 t4 = permanent_set_respond(signal, at, (Vector1){{s[6]}}, *(const Vector4 *)(p + 17));
+        signal = t4.a;
+        Vector1 after = t4.b;
         n[6] = after.v[0];
     }
     return signal;
@@ -518,8 +534,8 @@ static inline Tuple8 series_compliance_respond(double signal, Instant instant, N
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_series(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[18] != 0.0) {
-        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[19], p[20]}});
+    if (p[21] != 0.0) {
+        const Tuple8 t1 = series_compliance_respond(signal, at, (Nothing){0}, (Vector2){{p[22], p[23]}});
         signal = t1.a;
     }
     return signal;
@@ -656,12 +672,12 @@ static inline Tuple8 part_shape_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_law(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[21] != 0.0) {
-        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 22));
+    if (p[24] != 0.0) {
+        const Tuple8 t1 = elastic_shape_respond(signal, at, (Nothing){0}, *(const Vector13 *)(p + 25));
         signal = t1.a;
     }
-    if (p[35] != 0.0) {
-        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 36));
+    if (p[38] != 0.0) {
+        const Tuple8 t2 = part_shape_respond(signal, at, (Nothing){0}, *(const Vector12 *)(p + 39));
         signal = t2.a;
     }
     return signal;
@@ -775,29 +791,29 @@ static inline Tuple11 warm_up_respond(double signal, Instant instant, Vector1 st
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_scale(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[48] != 0.0) {
-        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[49], p[50], p[51]}});
+    if (p[51] != 0.0) {
+        const Tuple8 t1 = inflation_pressure_respond(signal, at, (Nothing){0}, (Vector3){{p[52], p[53], p[54]}});
         signal = t1.a;
     }
-    if (p[52] != 0.0) {
-        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 53));
+    if (p[55] != 0.0) {
+        const Tuple8 t2 = gas_compression_respond(signal, at, (Nothing){0}, *(const Vector5 *)(p + 56));
         signal = t2.a;
     }
-    if (p[58] != 0.0) {
+    if (p[61] != 0.0) {
         const Tuple15 t3 = mullins_softening_respond(signal, at, (Vector3){{s[7], s[8], s[9]}}, *(const Vector7 *)(p
-            + 59));
+            + 62));
         signal = t3.a;
         Vector3 after = t3.b;
         n[7] = after.v[0];
         n[8] = after.v[1];
         n[9] = after.v[2];
     }
-    if (p[66] != 0.0) {
-        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[67], p[68], p[69]}});
+    if (p[69] != 0.0) {
+        const Tuple8 t4 = pressure_leak_respond(signal, at, (Nothing){0}, (Vector3){{p[70], p[71], p[72]}});
         signal = t4.a;
     }
-    if (p[70] != 0.0) {
-        const Tuple11 t5 = warm_up_respond(signal, at, (Vector1){{s[10]}}, (Vector3){{p[71], p[72], p[73]}});
+    if (p[73] != 0.0) {
+        const Tuple11 t5 = warm_up_respond(signal, at, (Vector1){{s[10]}}, (Vector3){{p[74], p[75], p[76]}});
         signal = t5.a;
         Vector1 after = t5.b;
         n[10] = after.v[0];
@@ -1213,42 +1229,42 @@ static inline Tuple8 bottoming_respond(double signal, Instant instant, Nothing s
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_parallel(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[74] != 0.0) {
+    if (p[77] != 0.0) {
         const Tuple18 t1 = rate_independent_hysteresis_respond(signal, at, *(const Vector8 *)(s + 11), *(const
-            Vector8 *)(p + 75));
+            Vector8 *)(p + 78));
         signal = t1.a;
         Vector8 after = t1.b;
         for (int i = 0; i < 8; i++)
             n[11 + i] = after.v[i];
     }
-    if (p[83] != 0.0 && p[3] != 0.0) {
-        const Tuple11 t2 = viscous_damping_flow(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 84));
+    if (p[86] != 0.0 && p[3] != 0.0) {
+        const Tuple11 t2 = viscous_damping_flow(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 87));
         signal = t2.a;
         Vector1 flowed = t2.b;
         n[19] = flowed.v[0];
-    } else if (p[83] != 0.0) {
-        const Tuple11 t3 = viscous_damping_respond(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 84));
+    } else if (p[86] != 0.0) {
+        const Tuple11 t3 = viscous_damping_respond(signal, at, (Vector1){{s[19]}}, *(const Vector7 *)(p + 87));
         signal = t3.a;
         Vector1 after = t3.b;
         n[19] = after.v[0];
     }
-    if (p[91] != 0.0 && p[3] != 0.0) {
+    if (p[94] != 0.0 && p[3] != 0.0) {
         const Tuple20 t4 = viscoelastic_relaxation_flow(signal, at, *(const Vector6 *)(s + 20), *(const Vector12
-            *)(p + 92));
+            *)(p + 95));
         signal = t4.a;
         Vector6 flowed = t4.b;
         for (int i = 0; i < 6; i++)
             n[20 + i] = flowed.v[i];
-    } else if (p[91] != 0.0) {
+    } else if (p[94] != 0.0) {
         const Tuple20 t5 = viscoelastic_relaxation_respond(signal, at, *(const Vector6 *)(s + 20), *(const Vector12
-            *)(p + 92));
+            *)(p + 95));
         signal = t5.a;
         Vector6 after = t5.b;
         for (int i = 0; i < 6; i++)
             n[20 + i] = after.v[i];
     }
-    if (p[104] != 0.0) {
-        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 105));
+    if (p[107] != 0.0) {
+        const Tuple8 t6 = bottoming_respond(signal, at, (Nothing){0}, *(const Vector4 *)(p + 108));
         signal = t6.a;
     }
     return signal;
@@ -1263,8 +1279,8 @@ static inline Tuple8 inertia_respond(double signal, Instant instant, Nothing sta
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_mass(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[109] != 0.0) {
-        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[110]}});
+    if (p[112] != 0.0) {
+        const Tuple8 t1 = inertia_respond(signal, at, (Nothing){0}, (Vector1){{p[113]}});
         signal = t1.a;
     }
     return signal;
@@ -1489,31 +1505,31 @@ static inline Tuple8 saturation_respond(double signal, Instant instant, Nothing 
 /* flat_step.py: Return the signal after the effects of one place, and write their states after it into `n`. */
 static inline double through_reading(double signal, Instant at, const double *p, const double *s, double *n)
 {
-    if (p[111] != 0.0 && p[3] != 0.0) {
-        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[112], p[113],
-            p[114]}});
+    if (p[114] != 0.0 && p[3] != 0.0) {
+        const Tuple25 t1 = force_lag_flow(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[115], p[116],
+            p[117]}});
         signal = t1.a;
         Vector35 flowed = t1.b;
         for (int i = 0; i < 35; i++)
             n[26 + i] = flowed.v[i];
-    } else if (p[111] != 0.0) {
-        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[112], p[113],
-            p[114]}});
+    } else if (p[114] != 0.0) {
+        const Tuple25 t2 = force_lag_respond(signal, at, *(const Vector35 *)(s + 26), (Vector3){{p[115], p[116],
+            p[117]}});
         signal = t2.a;
         Vector35 after = t2.b;
         for (int i = 0; i < 35; i++)
             n[26 + i] = after.v[i];
     }
-    if (p[115] != 0.0) {
-        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[116]}});
+    if (p[118] != 0.0) {
+        const Tuple8 t3 = force_offset_respond(signal, at, (Nothing){0}, (Vector1){{p[119]}});
         signal = t3.a;
     }
-    if (p[117] != 0.0) {
-        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[118], p[119]}});
+    if (p[120] != 0.0) {
+        const Tuple8 t4 = force_drift_respond(signal, at, (Nothing){0}, (Vector2){{p[121], p[122]}});
         signal = t4.a;
     }
-    if (p[120] != 0.0) {
-        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[121], p[122]}});
+    if (p[123] != 0.0) {
+        const Tuple8 t5 = saturation_respond(signal, at, (Nothing){0}, (Vector2){{p[124], p[125]}});
         signal = t5.a;
     }
     return signal;

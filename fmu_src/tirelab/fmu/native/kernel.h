@@ -2,9 +2,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-#define LAYOUT "a9b0a236ae634d7c" /* what stands where in p and s */
+#define LAYOUT "e8466e2547a0d4ee" /* what stands where in p and s */
 enum {
-    PARAMETERS = 123,
+    PARAMETERS = 126,
     STATES = 183,
     S_TIME = 0,
     S_STARTED = 4,
