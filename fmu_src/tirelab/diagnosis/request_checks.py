@@ -41,7 +41,12 @@ def check_apart(read: Sequence[tuple[Path, Recording]]) -> None:
     for i, (file, one) in enumerate(read):
         for other_file, other in read[:i]:
             same = one.source is not None and other.source is not None and one.source.samefile(other.source)
-            if not same or split_piece(file)[1].part != split_piece(other_file)[1].part:
+            piece, other_piece = split_piece(file)[1], split_piece(other_file)[1]
+            if not same or piece.part != other_piece.part:
+                continue
+            rows, other_rows = piece.rows, other_piece.rows
+            # The clock of tests below one another begins anew in each.
+            if rows and other_rows and (rows[1] < other_rows[0] or other_rows[1] < rows[0]):
                 continue
             if one.time[0] <= other.time[-1] and other.time[0] <= one.time[-1]:
                 first, last = max(one.time[0], other.time[0]), min(one.time[-1], other.time[-1])

@@ -49,6 +49,17 @@ def test_parts_of_a_file_may_touch_nothing_of_each_other(tmp_path: Path) -> None
         check_apart([(first, one), (second, other)])
 
 
+def test_tests_below_one_another_share_no_rows_though_their_clocks_begin_anew(tmp_path: Path) -> None:
+    file = tmp_path / "press.csv"
+    file.write_text("")
+    first, second, across = (Path(f"{file}@{rows}") for rows in ("2:51", "60:109", "51:80"))
+    of_file = part(0.0, 9.0, source=file)
+    check_apart([(first, of_file), (second, of_file)])
+    check_apart([(second, of_file), (first, of_file)])
+    with pytest.raises(TirelabError, match="give each part of a file once"):
+        check_apart([(first, of_file), (across, of_file)])
+
+
 def test_a_tire_is_pressed_and_no_deeper_than_its_wheel() -> None:
     tire, held = TireModel(), TireModel(PowerLaw(), two_sided=True, inflated=False)
     check_depth([part(0.0, 1.0, 0.3)], [], tire)
