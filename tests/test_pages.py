@@ -88,8 +88,10 @@ NOT_RUN = {
     "what it measures is tested in tests/tirelab/estimation/test_held_out.py",
     "python tests/benchmarks/bench_identified.py DIR": "it diagnoses the trials of a proof for six minutes; "
     "the five minutes diagnose beside a law of the same recordings too",
-    "python tests/benchmarks/bench_few_samples.py --seed 5": "it makes 72 diagnoses in seven minutes; "
+    "python tests/benchmarks/bench_few_samples.py --seed 5": "it makes 96 diagnoses in ten minutes; "
     "tests/tirelab/preprocessing/test_motion.py and test_gauge.py test the motions",
+    "python tests/benchmarks/bench_ways_of_recording.py": "it makes 306 diagnoses in forty minutes; "
+    "tests/tirelab/diagnosis tests single effects",
     "python tests/benchmarks/bench_scales.py DIR --trials 18": "it diagnoses the trials of a proof for half an hour; "
     "tests/tirelab/estimation/test_explanation.py::test_the_scale_of_a_recording_changes_nothing tries two rides",
 }
