@@ -91,7 +91,7 @@ NOT_RUN = {
     "python tests/benchmarks/bench_few_samples.py --seed 5": "it makes 96 diagnoses in ten minutes; "
     "tests/tirelab/preprocessing/test_motion.py and test_gauge.py test the motions",
     "python tests/benchmarks/bench_ways_of_recording.py": "it makes 306 diagnoses in forty minutes; "
-    "tests/tirelab/diagnosis tests single effects",
+    "tests/tirelab/diagnosis/test_leave_one_out.py hides single effects too",
     "python tests/benchmarks/bench_scales.py DIR --trials 18": "it diagnoses the trials of a proof for half an hour; "
     "tests/tirelab/estimation/test_explanation.py::test_the_scale_of_a_recording_changes_nothing tries two rides",
 }
