@@ -44,6 +44,7 @@ SMALLER = {
     "tirelab prove --kind none --seed 9218868437227405 --trials 60 --out NONE": "--trials 1",
     "tirelab prove --kind pressure --seed 860221406 --trials 36 --out DIR": "--trials 1",
     "tirelab prove --kind set --seed 20261128 --trials 24 --out DIR": "--trials 1",
+    "tirelab prove --kind drift --seed 20261201 --trials 20 --out DIR": "--trials 1",
     "python -m tirelab.validation.calibrate --seed 8346268501 --seed 7778742049 --seed 9192631770 "
     "--trials 200 --out FILE": "--trials 10",
     "python -m tirelab.validation.coverage --seed 6 --draws 200": "--draws 2",
@@ -52,6 +53,7 @@ SMALLER = {
     "python -m tirelab.validation.form_errors --seed 1 --draws 400 --only mullins_softening": "--draws 60",
     "python -m tirelab.validation.form_errors --seed 1 --draws 100 --only part_shape": "--draws 3",
     "python -m tirelab.validation.form_errors --seed 1 --kind set --draws 200": "--draws 4",
+    "python -m tirelab.validation.form_errors --seed 1 --kind drift --draws 60": "--draws 4",
     "python -m tirelab.validation.plans --seed 20261122 --trials 12 --out FILE": "--trials 1",
     "python tests/sensitivity.py --seed 701408733 --trials 200 --each 6": "--trials 1 --each 1 "
     "--only selection/search.PRIOR_ODDS --out FILE",

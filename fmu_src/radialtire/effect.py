@@ -183,7 +183,8 @@ class Effect:
     source: where equation and magnitudes come from; look_alike: outside the catalogue, None for the law's own shape
     differentiates: whether it uses rate or acceleration; traits: of TRAITS
     form_error: part of its response by which other formulations of the same physics differ from it once fitted, as
-    measured by `tirelab.validation.form_errors` (at least 0.001; a lag of the deflection and a drift were never alone)
+    measured by `tirelab.validation.form_errors` (at least 0.001; a lag of the deflection and a drift of the force were
+    never alone)
     flow: the effect as differential equations, or None: then its state is memory, kept at accepted steps
     reads: the channel that it reads, or None; changes: names of the channels that move in proportion to what it does to
     the force, so that a recording of them shows it or refutes it

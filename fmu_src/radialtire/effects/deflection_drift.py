@@ -63,5 +63,5 @@ DEFLECTION_DRIFT = Effect(
     source="warm-up drift of a displacement gauge, as that of a load cell; magnitudes are in its data sheet",
     look_alike=LookAlike("a specimen that slips in its grips", "mark it where the grips hold it"),
     traits=("slow", "reading"),
-    form_error=0.001,
+    form_error=0.008,
 )
