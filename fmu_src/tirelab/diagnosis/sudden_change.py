@@ -92,9 +92,11 @@ class SuddenChange(Contradiction):
     @property
     def action(self) -> str:
         """What to do about it, as a sentence."""
+        moment = self.moments[0]
+        ranges = f", FILE@:{moment} and FILE@{moment}:".replace(" s", "s") if moment.endswith(" s") else ""
         return (
-            f"Look for what slipped, tore or was switched at {self.moments[0]}, and diagnose the ranges before and "
-            "after it apart."
+            f"Look for what slipped, tore or was switched at {moment}, and diagnose the ranges before and after it "
+            f"apart{ranges}."
         )
 
     @property

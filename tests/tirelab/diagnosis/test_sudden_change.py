@@ -71,6 +71,8 @@ def test_a_step_is_told_with_its_moment_and_size(name: str) -> None:
     assert moment == pytest.approx(41.0, abs=0.2)
     assert verdict.summary.startswith(f"Something changes at once at {found.moments[0]}. It is as if ")
     assert found.without == pytest.approx(NOISE, rel=0.05)
+    before, after = (f"FILE@{bounds}" for bounds in (f":{moment:g}s", f"{moment:g}s:"))
+    assert found.action.endswith(f"apart, {before} and {after}.")
 
 
 @pytest.mark.parametrize("name", CASES)
