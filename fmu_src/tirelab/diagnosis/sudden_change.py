@@ -218,10 +218,8 @@ def _is_sudden(steps: _Steps, own: float, gain: float) -> bool:
     return bool(gain > NEAR and over_curve > NEAR and steps.left - 1.0 < EXPLAINED * (own - 1.0))
 
 
-def _gain(own: float, steps: _Steps | None) -> float:
+def _gain(own: float, steps: _Steps) -> float:
     """Return by how much steps are likelier than what leaves `own`, a mean square in units of the noise: log odds."""
-    if steps is None:
-        return -np.inf
     return float(0.5 * EFFECTIVE * np.log(own / steps.left) - len(steps.places) * np.log(EFFECTIVE))
 
 
