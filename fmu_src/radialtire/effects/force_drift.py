@@ -8,21 +8,16 @@ It adds to the force, where a leaking or warming tire scales it: samples of the 
 
 from __future__ import annotations
 
-import math
-
 from ..effect import Effect, Instant, LookAlike, State
 from ..parameter import Parameter
 from ..prior import Prior
+from .settling_drift import drift_time
 
 
 def respond(signal: float, instant: Instant, state: State, values: State) -> tuple[float, State]:
     """Add the drift since the start [N]."""
     drift, settling = values
-    settled = settling * instant.time
-    duration = instant.time
-    if settled > 1e-9:
-        duration *= -math.expm1(-settled) / settled
-    return signal + drift * duration, state
+    return signal + drift * drift_time(instant.time, settling), state
 
 
 FORCE_DRIFT = Effect(

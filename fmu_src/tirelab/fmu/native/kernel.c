@@ -9,6 +9,7 @@ static const double APART = 1000000.0;
 static const double CM_PER_M = 100.0;
 static const double DEAD_PART = 0.005;
 static const double DEPTH = 0.01;
+static const double EVEN = 1e-09;
 static const double EXACT = 1e-12;
 static const double FADES = 0.5;
 static const double FAR = 40.0;
@@ -387,16 +388,21 @@ static inline Tuple8 deflection_offset_respond(double signal, Instant instant, N
     return (Tuple8){signal + values.v[0], state};
 }
 
+/* effects.settling_drift.py: Return (1 - exp(-k t)) / k [s]: the time that a drift would take at its first rate. */
+static inline double settling_drift_drift_time(double time, double settling)
+{
+    double settled = settling * time;
+    if (settled <= EVEN) {
+        return time;
+    }
+    return -time * expm1(-settled) / settled;
+}
+
 /* effects.deflection_drift.py: Shift the deflection [m] by the drift since the start. */
 static inline Tuple8 deflection_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     double drift = values.v[0], settling = values.v[1];
-    double settled = settling * instant.time;
-    double duration = instant.time;
-    if (settled > 1e-09) {
-        duration *= -expm1(-settled) / settled;
-    }
-    return (Tuple8){signal + drift * duration, state};
+    return (Tuple8){signal + drift * settling_drift_drift_time(instant.time, settling), state};
 }
 
 /* effects.deflection_lag.py: Advance the deflection [m] by the lag of its channel. */
@@ -1480,12 +1486,7 @@ static inline Tuple8 force_offset_respond(double signal, Instant instant, Nothin
 static inline Tuple8 force_drift_respond(double signal, Instant instant, Nothing state, Vector2 values)
 {
     double drift = values.v[0], settling = values.v[1];
-    double settled = settling * instant.time;
-    double duration = instant.time;
-    if (settled > 1e-09) {
-        duration *= -expm1(-settled) / settled;
-    }
-    return (Tuple8){signal + drift * duration, state};
+    return (Tuple8){signal + drift * settling_drift_drift_time(instant.time, settling), state};
 }
 
 /* effects.saturation.py: Return the force as read [N]. */
