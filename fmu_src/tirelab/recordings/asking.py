@@ -16,9 +16,9 @@ from .guessing import guessed_columns, stating_time
 from .matching import Match, columns_listed
 from .metadata import Settings
 from .origin import Origin
+from .other_columns import is_strained
 from .plausibility import guessed_units
 from .units import UnitError, given_conversion, meant_unit
-from .vocabulary import is_strained
 
 FloatArray = NDArray[np.float64]
 

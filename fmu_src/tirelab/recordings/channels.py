@@ -9,17 +9,9 @@ from .assignments import assignments
 from .formats import Header, RecordingError
 from .formats.table import quoted
 from .origin import in_quotes
+from .other_columns import is_measured, is_strained
 from .units import meant_unit, measures
-from .vocabulary import (
-    any_channel,
-    foreign_channel,
-    glued_ends,
-    is_measured,
-    is_strained,
-    name_and_unit,
-    second_channel,
-    without_count,
-)
+from .vocabulary import any_channel, foreign_channel, glued_ends, name_and_unit, second_channel, without_count
 
 
 @dataclass(frozen=True)

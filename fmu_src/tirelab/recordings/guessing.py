@@ -19,8 +19,9 @@ from .channels import (
 )
 from .formats import Header
 from .matching import Match
+from .other_columns import counts_rows, idle, is_measured, is_strained, says_another
 from .units import is_unit, meant_unit, measures
-from .vocabulary import begins_like, counts_rows, is_measured, is_strained, stands_for
+from .vocabulary import begins_like, stands_for
 
 FloatArray = NDArray[np.float64]
 
@@ -127,12 +128,13 @@ def guessed_columns(
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
     channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
     moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither, and what was
-    asked for is no reading. A counter, a strain and a stress are neither, nor is what was sampled another number of
-    times. Beside a strain and a stress nothing is guessed by its size: these are the readings, by the specimen's size.
+    asked for is no reading, nor is an acceleration one of either. A counter, a strain and a stress are neither, nor is
+    what was sampled another number of times, or rests at a few values. Beside a strain and a stress nothing is guessed
+    by its size: these are the readings, by the specimen's size.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
-    free = [i for i in free if not _is_index(headers, i, values[i])]
+    free = [i for i in free if not _is_index(headers, i, values[i]) and not idle(values[i])]
     others = [i for i in free if headers[i].unit or not np.all(np.diff(values[i]) == 1.0)]
     free = others if len(others) >= len(missing) else free  # what rises by ones counts the rows
     free = [i for i in free if not is_strained(headers[i].name) or _states(headers[i], "deflection")]
@@ -181,7 +183,7 @@ def guessed_columns(
             guessed[name] = said[0]
             free.remove(said[0])
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
-    free = [i for i in free if is_measured(headers[i].name)]
+    free = [i for i in free if is_measured(headers[i].name) and not says_another(headers[i].name)]
     clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1
     if len(free) > len(both) and clock in values:
         rates = rates_among({i: values[i] for i in {*free, *places.values()} - {clock}}, values[clock])

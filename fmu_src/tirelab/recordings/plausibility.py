@@ -15,6 +15,7 @@ from ..names import plain
 from .clock_doubt import likely_clock
 from .jumps import sudden_doubts
 from .origin import Origin
+from .other_columns import idle
 from .samples import LARGEST_PLAUSIBLE
 from .work_doubt import work_doubt
 from .zero import Gauges, Zero, force_at_least
@@ -99,6 +100,10 @@ def doubts_of(
     loops += tuple(_placed(where(name, None), said) for name, said in _state_doubts(values, units, part))
     for name, at, said in sudden_doubts(values["deflection"], values["force"]):
         loops += (_placed(where(name, at), said),)
+    if idle(moved := values["deflection"]):
+        levels = len(np.unique(moved))
+        rests = f"takes {levels} values in {len(moved)} readings: is it the gauge that followed the motion?"
+        loops += (_placed(where("deflection", None), rests),)
     step = max(1, len(values["force"]) // LOOKED_AT)
     x, f = values["deflection"][::step], values["force"][::step]
     radius = values["radius"][::step]

@@ -13,8 +13,8 @@ from .channels import UNIT_OF, unit_of_column
 from .formats import Header, RecordingError, Table, Wanted
 from .formats.table import listed, quoted
 from .matching import recognised
+from .other_columns import counts_rows, is_measured
 from .units import measures
-from .vocabulary import counts_rows, is_measured
 
 FloatArray = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TirelabError
+from .other_columns import is_measured
 from .unit_words import CASED, COMMON, LIKELY, LOOKALIKES, MICRO_LOST, POWER, SPELLINGS, USUAL, so_many
-from .vocabulary import is_measured
 
 if TYPE_CHECKING:
     import pint

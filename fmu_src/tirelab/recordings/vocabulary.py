@@ -243,65 +243,6 @@ STAND_INS = {
 }
 """Quantities that stand for a channel in a test of torsion, proposed to be checked."""
 
-NOT_MEASURED = frozenset(
-    {
-        *("command", "cmd", "demand", "target", "setpoint", "set", "reference", "program", "error"),
-        *("desired", "des", "ref"),
-        *("peak", "valley", "maximum", "max", "minimum", "min", "mean", "average", "amplitude", "limit"),
-        *("soll", "sollwert", "consigne", "consigna", "mittelwert", "moyenne", "media"),
-        *("borvarde", "medelvarde", "middelvaerdi", "keskiarvo", "hedef", "ortalama", "atlag", "gemiddelde"),
-        *("zadana", "zadane", "zadany", "srednia", "prumer", "desejado", "desejada"),
-    }
-)
-"""Words of a name that say that its column holds no reading: what was asked for, or what was worked out."""
-
-NOT_MEASURED_GLUED = ("目标", "目標", "设定", "設定", "指令", "命令", "控制", "峰值", "最大", "最小", "平均")
-"""The same in languages that write without spaces."""
-
-COUNTERS = frozenset(
-    {
-        *(
-            "sample",
-            "samples",
-            "index",
-            "idx",
-            "no",
-            "nr",
-            "number",
-            "point",
-            "points",
-            "scan",
-            "record",
-            "row",
-        ),
-        *(
-            "reading",
-            "count",
-            "counter",
-            "n",
-            "id",
-            "line",
-            "data point",
-            "sample number",
-            "sample no",
-            "sample nr",
-        ),
-        *("step", "steps", "pulse", "pulses", "tick", "ticks", "cycle", "cycles", "schritt", "schritte"),
-        *("point number", "messpunkt", "messwert", "nummer", "zeile", "echantillon", "numero", "muestra"),
-        *("numer", "lp", "cislo", "sira", "sorszam", "indeks", "punkt", "mittaus"),
-        *("序号", "编号", "番号"),
-    }
-)
-"""Names of columns that count the rows, or the steps of a motor."""
-
-STRAINED = frozenset(
-    {
-        *("strain", "stress", "dehnung", "spannung", "contrainte", "esfuerzo", "tensione", "应变", "应力"),
-        *("tojning", "toyning", "venyma", "jannitys", "gerinim", "gerilme", "odksztalcenie", "naprezenie"),
-    }
-)
-"""Words of a name that say a deflection or a force by the size of the specimen, where no unit says otherwise."""
-
 SHORTEST = 4
 """Letters of a name that is taken for the beginning of a word."""
 
@@ -310,7 +251,6 @@ _WHOLE_LETTERS = str.maketrans(
 )
 """Small letters that Unicode does not part into a letter and its mark."""
 
-_IDENTIFIER = re.compile(r"(?i:(?:^|[\W_])id)$|[a-z]I[dD]$")
 _SIGN = re.compile(r"[\u3040-\u30ff\u3400-\u9fff\uac00-\ud7a3]")
 _UNIT_AFTER = re.compile(r"(?P<name>.+?)(?:\s+in\s+|\s*/\s*|\s*,\s+|\s+en\s+|\s+)(?P<unit>[^\s,]+)")
 _COUNTED = re.compile(
@@ -354,26 +294,10 @@ def stands_for(name: str, channel: str) -> bool:
     return bool(STAND_INS.get(channel, frozenset()) & set(re.findall(r"[^\W\d_]+", plain(name))))
 
 
-def is_measured(name: str) -> bool:
-    """Whether no word of a name says that its column holds what was asked for or worked out: `Force command`."""
-    glued = any(word in name for word in NOT_MEASURED_GLUED)
-    return not glued and not NOT_MEASURED & set(re.split(r"[^\w]+", plain(name)))
-
-
 def glued_ends(name: str) -> list[str]:
     """Return the ends of a name, without the whole, that begin with a sign of a language written without spaces:
     `位移`, `移` of `350T位移`."""
     return [name[i:] for i in range(1, len(name)) if _SIGN.match(name[i])]
-
-
-def counts_rows(name: str) -> bool:
-    """Whether a name is one of a column that counts rows, steps or tests: `Sample`, `No.`, `Messpunkt`, `TestID`."""
-    return plain(name) in COUNTERS or bool(_IDENTIFIER.search(name))
-
-
-def is_strained(name: str) -> bool:
-    """Whether a name is one of a strain or a stress: `True Strain`, `Spannung`."""
-    return bool(STRAINED & set(re.split(r"[^\w]+", plain(name))))
 
 
 def without_count(name: str) -> str | None:

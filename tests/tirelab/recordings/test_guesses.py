@@ -268,6 +268,26 @@ def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: P
     assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
 
 
+def test_an_acceleration_beside_a_force_is_no_deflection(tmp_path: Path) -> None:
+    time, deflection, force = loading()
+    path = write_rows(tmp_path / "a.csv", "Time (s),Acceleration,Load (N)", time, deflection, force)
+    assert proposed(path) == ["--columns", "deflection=NAME"]
+
+
+def test_a_gauge_that_rests_is_no_deflection_and_asked_about_where_it_is_given(tmp_path: Path) -> None:
+    """Two hundred readings at five values; a gauge of twenty steps follows the motion."""
+    time, deflection, force = loading(200)
+    coarse = {n: np.round(n * deflection / deflection.max()) / 10.0 for n in (4, 20)}
+    still = write_rows(tmp_path / "a.csv", "Time (s),Gauge A,Load (N)", time, coarse[4], force)
+    assert proposed(still) == ["--columns", "deflection=NAME"]
+    steps = write_rows(tmp_path / "b.csv", "Time (s),Gauge A,Load (N)", time, coarse[20], force)
+    assert proposed(steps)[:2] == ["--columns", "deflection=#2"]
+    for path, doubted in ((still, True), (steps, False)):
+        choices = Choices(part=True, columns={"deflection": "#2"}, units={"deflection": "mm"})
+        doubts = understand(path, choices).recording.doubts
+        assert any("takes 5 values in 200 readings" in said for said in doubts) == doubted
+
+
 def test_what_was_asked_for_is_no_reading(tmp_path: Path) -> None:
     """A ventilator and a test lung: the pressure that was set, before the one that was read."""
     time, deflection, force = loading()

@@ -25,8 +25,6 @@ for _family in ("machine", "logger", "table", "language", "binary"):
 ASKED = {
     "roehrig_damper.csv": "'lbs' is not a unit of force; did you mean lbf?",
     "catman.asc": "no column for time",
-    "labview.lvm": "no column for time; its columns are 'X_Value', 'Force'",
-    "labview_bare_ends.lvm": "no column for time; its columns are 'X_Value', 'Force'",
     "scale_in_grams.csv": "no column for force; its columns are 'millis', 'position_um', 'weight_g'",
     "labview_short_rows.lvm": "no column for time; its columns are 'X_Value', 'Displacement'",
     "arduino_ms.txt": "has no header row",

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from house_form import loading
+from tirelab.recordings.other_columns import is_measured
 from tirelab.recordings.recording import read_recording
-from tirelab.recordings.vocabulary import foreign_channel, is_measured, plain
+from tirelab.recordings.vocabulary import foreign_channel, plain
 
 LANGUAGES = {
     "Swedish": ("Tid", "Väg", "Kraft"),

@@ -7,14 +7,15 @@ import csv
 import io
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from ..units import is_unit, split_header
+from ..units import split_header
 from .cell_units import lines_without_units, taken_from_cells, units_in_cells
 from .clock import is_clock
 from .encoding import find_encoding
+from .header_units import BELOW_NAMES, above_names, below_names, over_time, units_beside
 from .not_a_table import refuse_labels, refuse_serial_monitor, refuse_split_numbers
 from .number_style import NumberStyle, style_of, with_plain_marks
 from .separator import find_separator
@@ -29,7 +30,7 @@ from .table import (
     with_cell_units,
     with_dates,
 )
-from .table_search import bare_unit, find_table, is_units, is_value, states_units, unit_below
+from .table_search import bare_unit, find_table, is_units, is_value
 
 HEAD = 65_536
 """How much of the file [B] is looked at to find its layout."""
@@ -37,15 +38,10 @@ HEAD = 65_536
 SAMPLE = 500
 """How many of its lines are looked at for decimal commas and clock times."""
 
-_UNITS_CALLED = re.compile(r'\s*"?(?:[xy]_)?(?:unit|einheit|unité|unidad)', re.IGNORECASE)
-
 _LABELLED = re.compile(r"#\s*(columns|channels|fields|units)\s*[:=]\s*(.+)", re.IGNORECASE)
 
 _MARKED = re.compile(r"^\s*(?:[%!;*>]+|//+)\s*(?=\w)")
 """What programs write before a line that holds no numbers, as others write #."""
-
-BELOW_NAMES = 3
-"""Most rows of text between the names of the columns and the numbers: units, addresses, remarks."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +117,8 @@ def find_layout(path: Path, skip_rows: int | None = None) -> Layout:
         headers, below, more = below_names(lines, start + header_lines, headers, separator)
         before, said = header_lines + below, (*said, *more)
     headers, above = above_names(lines[first:start], headers, separator)
-    said = (*said, *above)
+    headers, dimension = over_time(lines[first:start], headers)
+    said = (*said, *above, *dimension)
     if start > first:
         said = (*said, f"table found at row {start + 1}: the lines above it are kept as its provenance")
     headers, beside = units_beside(headers, body)
@@ -214,100 +211,6 @@ def _names(
     return [""] * len(header), False, ("the file has no header row: its columns are known by number only",)
 
 
-def below_names(
-    lines: Sequence[str], line: int, headers: tuple[Header, ...], separator: str
-) -> tuple[tuple[Header, ...], int, tuple[str, ...]]:
-    """Return the headers with the units of a row below them, how many lines stand above the numbers, and notes.
-
-    A row of text that is not of units is skipped too, with a note, where rows of numbers follow it.
-    """
-    texts, numbers_follow = _rows_of_text(lines, line, separator)
-    units = next(
-        (row for row in texts[:BELOW_NAMES] if len(row[1]) == len(headers) and states_units(row[1])), None
-    )
-    if units is None and not texts:
-        return headers, 0, ()
-    whole = numbers_follow and len(texts) <= BELOW_NAMES and all(len(row) == len(headers) for _, row in texts)
-    if not whole and (units is None or units is not texts[0]):
-        return headers, 0, ()
-    notes = []
-    if units is not None:
-        headers = tuple(_with_unit(h, cell) for h, cell in zip(headers, units[1], strict=True))
-        notes.append(f"units taken from row {units[0]}, below the names")
-    others = [str(row) for row, _ in texts if units is None or row != units[0]] if whole else []
-    if others:
-        notes.append(f"text between the names and the numbers skipped: row {', '.join(others)}")
-    last = texts[-1][0] if whole else (units or texts[0])[0]
-    return headers, last - line, tuple(notes)
-
-
-def above_names(
-    lines: Sequence[str], headers: tuple[Header, ...], separator: str
-) -> tuple[tuple[Header, ...], tuple[str, ...]]:
-    """Return the headers with the units of the last row above them that calls itself one of units, and a note.
-
-    Such a row begins with a word for units, Y_Unit_Label or Einheit, and holds a unit for each of the other columns; or
-    it sets it to the units of all: UNIT = gf,mm.
-    """
-    if any(header.unit for header in headers):
-        return headers, ()
-    right_above = next(csv.reader(lines[-1:], delimiter=separator), [])
-    if len(right_above) == len(headers) > 1 and all(map(str.strip, right_above)) and is_units(right_above):
-        named = tuple(_with_unit(h, cell) for h, cell in zip(headers, right_above, strict=True))
-        return named, ("units taken from the row above the names",)
-    for line in reversed(lines):
-        if _UNITS_CALLED.match(line) is None:
-            continue
-        row = next(csv.reader([line], delimiter=separator), [])
-        label, _, first = row[0].partition("=")
-        cells = [first.strip(), *row[1:]]
-        if is_units(cells) and sum(map(bool, map(str.strip, cells))) > 1:
-            units = [*cells, *[""] * len(headers)]
-            named = tuple(_with_unit(h, cell) for h, cell in zip(headers, units, strict=False))
-            return named, (
-                f"units taken from the row above the names that begins with {quoted(label.strip())}",
-            )
-    return headers, ()
-
-
-def units_beside(
-    headers: tuple[Header, ...], body: Sequence[Sequence[str]]
-) -> tuple[tuple[Header, ...], tuple[str, ...]]:
-    """Return the headers with the units that stand in the columns behind theirs, in every row, and a note."""
-    found = {}
-    for index in range(1, len(headers)):
-        cells = [row[index].strip() for row in body if index < len(row) and row[index].strip()]
-        called = _UNITS_CALLED.match(headers[index].name) is not None
-        if called and headers[index - 1].unit is None and cells and all(map(is_unit, set(cells))):
-            found[index - 1] = cells[0]
-    if not found:
-        return headers, ()
-    with_units = tuple(
-        replace(h, unit=found[i], unit_beside=True) if i in found else h for i, h in enumerate(headers)
-    )
-    return with_units, (f"units taken from the columns beside: {', '.join(found.values())}",)
-
-
-def _rows_of_text(
-    lines: Sequence[str], line: int, separator: str
-) -> tuple[list[tuple[int, list[str]]], bool]:
-    """Return the rows below the names that hold no number, with their rows in the file, and whether numbers follow."""
-    texts: list[tuple[int, list[str]]] = []
-    reader = csv.reader(lines[line : line + 4 * BELOW_NAMES], delimiter=separator)
-    try:
-        for row in reader:
-            filled = [cell for cell in row if cell.strip().lower() not in BLANK_WORDS]
-            if filled and is_comment(row[0]):
-                break
-            if any(is_value(cell) for cell in filled):
-                return texts, len(filled) > 1 and all(is_value(cell) for cell in filled)
-            if filled:
-                texts.append((line + reader.line_num, row))
-    except csv.Error:
-        pass
-    return texts, False
-
-
 def _clock_columns(body: Sequence[Sequence[str]]) -> frozenset[int]:
     """Return the columns that hold clock times: nine of ten of the cells that hold something, in the first rows."""
     found = []
@@ -392,8 +295,3 @@ def _header(cell: str, number: int) -> Header:
     cell = _MARKED.sub("", cell) if number == 1 else cell
     name, unit = split_header(cell)
     return Header(name or f"#{number}", unit, " ".join(cell.split()) or f"#{number}")
-
-
-def _with_unit(header: Header, cell: str) -> Header:
-    """Return a header with the unit of a cell below it."""
-    return Header(header.name, unit_below(header.unit, cell), header.text)

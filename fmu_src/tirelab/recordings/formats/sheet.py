@@ -12,7 +12,8 @@ from typing import Any
 
 from ..units import split_header
 from .cell_units import lines_without_units, row_without_units, taken_from_cells, units_in_cells
-from .layout import below_names, column_counted
+from .header_units import below_names
+from .layout import column_counted
 from .number_style import NumberStyle, style_of, with_plain_marks
 from .table import Header, RecordingError, listed, quoted, with_cell_units, with_dates
 from .table_search import SEARCHED, find_table

@@ -334,15 +334,31 @@ def test_the_settings_above_the_end_of_a_header_name_no_columns(tmp_path: Path) 
     )
     rows = "".join(f"{0.1 * i:.1f}\t{0.2 * i:.3f}\t{5.0 * i:.2f}\t\n" for i in range(50))
     (tmp_path / "a.lvm").write_text(head + rows)
-    with pytest.raises(RecordingError, match="no column for time; its columns are 'X_Value'"):
+    with pytest.raises(RecordingError, match="no unit for 'Displacement', 'Force'"):
         read_recording(tmp_path / "a.lvm", radius="flat")
-    found = read_recording(
-        tmp_path / "a.lvm",
-        columns={"time": "#1"},
-        units={"time": "s", "deflection": "mm", "force": "N"},
-        radius="flat",
-    )
+    found = read_recording(tmp_path / "a.lvm", units={"deflection": "mm", "force": "N"}, radius="flat")
     assert found.force[-1] == 245.0
+    np.testing.assert_allclose(found.time, 0.1 * np.arange(50))
+    assert "X_Value is the time, as X_Dimension says" in found.notes
+    (tmp_path / "b.lvm").write_text(head.replace("Time", "Frequency") + rows)
+    with pytest.raises(RecordingError, match="no column for time"):
+        read_recording(tmp_path / "b.lvm", units={"deflection": "mm", "force": "N"}, radius="flat")
+
+
+def test_voltages_of_a_logger_are_told_as_its_channels_units(tmp_path: Path) -> None:
+    head = (
+        "LabVIEW Measurement\t\nSeparator\tTab\nX_Columns\tOne\n***End_of_Header***\t\nChannels\t2\t\t\n"
+        "Y_Unit_Label\tVolts\tVolts\t\nX_Dimension\tTime\tTime\t\n***End_of_Header***\t\t\t\n"
+        "X_Value\tDisplacement\tForce\tComment\n"
+    )
+    rows = "".join(f"{0.1 * i:.1f}\t{0.02 * i:.3f}\t{0.05 * i:.3f}\t\n" for i in range(50))
+    (tmp_path / "a.lvm").write_text(head + rows)
+    with pytest.raises(RecordingError, match="'Volts' is not a unit of force; write the force of 1 Volts"):
+        read_recording(tmp_path / "a.lvm", radius="flat")
+    units = {"deflection": "10 mm", "force": "250 N"}
+    found = read_recording(tmp_path / "a.lvm", units=units, radius="flat")
+    assert found.force[-1] == pytest.approx(250.0 * 2.45)
+    assert found.deflection[-1] == pytest.approx(0.0098)
 
 
 def test_a_clock_of_two_parts_says_that_it_may_be_either(path: Path) -> None:
