@@ -191,15 +191,15 @@ def law_of_first_loading(
     there more than in the later ones is left by the correction too.
 
     before, left [N]: residuals of each recording. Beside a law amid the cycles of a part softening may not be found. A
-    law that leaves less of the first loading than half of what parts it from the later ones is its own already.
+    law that leaves less of the first loading than a quarter of what parts it from the later ones is its own already.
     """
     found = {}
-    for recording, *residuals in zip(fitted, before, left, strict=True):
-        all_of_it, rest = (first_loading(recording, own) for own in residuals)
+    for recording, missed, kept in zip(fitted, before, left, strict=True):
+        all_of_it, rest = (first_loading(recording, own) for own in (missed, kept))
         if all_of_it is None or rest is None or rest.above <= MAJORITY * all_of_it.above:
             continue
-        first = (recording.time >= rest.begins) & (recording.time <= rest.ends)
-        if float(np.sqrt(np.mean(residuals[0][first] ** 2))) > (1.0 - MAJORITY) * all_of_it.above:
+        there = (recording.time >= rest.begins) & (recording.time <= rest.ends)
+        if float(np.sqrt(np.mean(missed[there] ** 2))) > MAJORITY**2 * all_of_it.above:
             found[recording.name] = rest
     if not found:
         return []
