@@ -57,6 +57,7 @@ from .summary import (
     law_of_first_loading,
     not_seen,
     other_law,
+    pressed_only,
     slow_noise,
     summarise,
     together,
@@ -313,6 +314,7 @@ def _sentences(
     told += not_seen(left.remainder.uncompared, left.models) if left.unexplained else []
     told += slow
     told += other_law(fit.after, left.models) if baseline.is_part and baseline.curve is None else []
+    told += pressed_only(data.fitted) if baseline.two_sided else []
     if baseline.is_part and left.unexplained:
         told += law_of_first_loading(data.fitted, data.residuals, explanation.residuals)
     return told

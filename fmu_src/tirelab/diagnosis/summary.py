@@ -11,6 +11,7 @@ from radialtire import CATALOGUE
 
 from ..estimation.findings import NamedEffect
 from ..identification.first_loading import first_loading
+from ..identification.lift_off import lifts_off
 from ..names import REFITTED_LAW, UNKNOWN, plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
@@ -181,6 +182,18 @@ def other_law(left: float, regressions: Sequence[ResidualModel]) -> list[str]:
     return [
         f"A curve of the force over the deflection leaves {newtons(curve.after)} of it: beside the law of "
         "`tirelab identify --part piecewise` more may be told."
+    ]
+
+
+def pressed_only(fitted: Sequence[Recorded]) -> list[str]:
+    """Return the advice to believe that a part is only pressed, where a recording shows what presses it lift off."""
+    found = [r.name for r in fitted if lifts_off([r])]
+    if not found:
+        return []
+    return [
+        f"In {found[0]} the force rests on a way back where the part was loaded before: what presses it lifts off, and "
+        "the tire file says that the part is held at both ends. Identify it with `--part power` or `--part power_gap`, "
+        "and diagnose beside that."
     ]
 
 

@@ -18,6 +18,7 @@ from ..recordings.sign_convention import mass_alike
 from ..recordings.zero import FARTHEST
 from .both_ways import common_curve
 from .law_fit import LawFit
+from .lift_off import lifts_off
 from .part_laws import constant_fit, reading_noise
 from .power_fit import EXPONENT_BOUNDS
 
@@ -33,6 +34,9 @@ TWO_SIDED = ("constant", "linear", "power", "power_preload")
 """Laws that a tire file holds as a power law of a part that is held at both ends, with its preload; the power alone
 only where the recordings show it pull, else it is one that is pressed, and may lift off.
 """
+
+PRESSED = ("power", *GAPS)
+"""Laws that a tire file holds of a part that is only pressed."""
 
 CURVE = "piecewise"
 """Law that a tire file holds as a curve of a part that is held at both ends. Every recording has one; it is proposed
@@ -93,17 +97,19 @@ def tire_of(fit: LawFit, recordings: Sequence[Recording], name: str) -> TireMode
 def best_writable(fits: Sequence[LawFit], recordings: Sequence[Recording]) -> str:
     """Return the first of the laws that a tire file holds, "" where it holds none.
 
-    One whose spring is none is left to the constant. The curve is taken where it is proposed (`curve_advice`).
+    One whose spring is none is left to the constant. The curve is taken where it is proposed (`curve_advice`). Where
+    what presses the part lifts off it, it is not held at both ends.
     """
+    pressed = lifts_off(recordings)
     for fit in fits:
-        if fit.name == CURVE:
+        if fit.name == CURVE or (pressed and fit.name not in PRESSED):
             continue
         try:
             tire = tire_of(fit, recordings, "")
         except TirelabError:
             continue
         if fit.name == "constant" or tire.law != PowerLaw(LEAST_SPRING, 1.0):
-            return CURVE if curve_advice(tire, recordings) else fit.name
+            return CURVE if not pressed and curve_advice(tire, recordings) else fit.name
     return ""
 
 
@@ -127,9 +133,13 @@ def curve_advice(tire: TireModel, recordings: Sequence[Recording]) -> str:
 
 
 def _pulled(recordings: Sequence[Recording]) -> bool:
-    """Return whether a recording shows the force of a part that pulls, or deflections of one."""
+    """Return whether a recording shows the force of a part that pulls, or deflections of one.
+
+    What sticks to a press pulls before it lifts off, and is pressed all the same.
+    """
     stroke = stroke_of(recordings)
-    return any(pull_of(r.force) < 0.0 or float(r.deflection.min()) < -AT_REST * stroke for r in recordings)
+    pulls = (pull_of(r.force) < 0.0 or float(r.deflection.min()) < -AT_REST * stroke for r in recordings)
+    return not lifts_off(recordings) and any(pulls)
 
 
 def _two_sided(fit: LawFit, recordings: Sequence[Recording]) -> TireModel:

@@ -12,6 +12,7 @@ from tirelab.diagnosis.summary import (
     law_of_first_loading,
     not_seen,
     other_law,
+    pressed_only,
     slow_noise,
     summarise,
 )
@@ -77,6 +78,19 @@ def test_a_law_amid_a_first_loading_and_softened_cycles_is_told(law: float, kept
     if said:
         assert told[0].startswith("Of the first loading in foam, from 10 s to 20 s, 9")
         assert "Identify the law of the first loading" in told[0]
+
+
+def test_a_part_that_the_press_lifts_off_is_said_to_be_only_pressed():
+    """Food that keeps 6 of its 10 mm: no force on the way back below them."""
+    time = np.arange(0.0, 20.0, 0.02)
+    x = 0.01 * (1.0 - np.abs(1.0 - time / 10.0))
+    force = 1e4 * np.where(time < 10.0, x, np.maximum(2.5 * (x - 0.006), 0.0))
+    spring = Recording("spring", time, x, np.full(x.size, np.inf), 1e4 * x)
+    food = Recording("food", time, x, np.full(x.size, np.inf), force)
+    (told,) = pressed_only([spring, food])
+    assert told.startswith("In food the force rests on a way back")
+    assert "`--part power`" in told
+    assert pressed_only([spring]) == []
 
 
 def test_where_no_effect_helps_the_error_stays_and_the_regression_is_stated():
