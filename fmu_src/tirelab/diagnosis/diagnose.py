@@ -55,6 +55,7 @@ from .sudden_change import sudden_change
 from .summary import (
     before_simulation,
     law_of_first_loading,
+    less_than_noise,
     not_seen,
     other_law,
     pressed_only,
@@ -313,6 +314,8 @@ def _sentences(
     told += before_simulation(judged.of_law, judged.before.tried) if judged.of_law else []
     told += not_seen(left.remainder.uncompared, left.models) if left.unexplained else []
     told += slow
+    if not (explanation.effects or left.unexplained or any(noise.memory > 1 for noise in noises)):
+        told += less_than_noise(explanation.in_noise, fit.noise)
     told += other_law(fit.after, left.models) if baseline.is_part and baseline.curve is None else []
     told += pressed_only(data.fitted) if baseline.two_sided else []
     if baseline.is_part and left.unexplained:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from radialtire import CATALOGUE
+from scipy.stats import chi2
 
 from ..estimation.findings import NamedEffect
 from ..identification.first_loading import first_loading
@@ -37,6 +38,7 @@ from ..report.words import (
     is_undecided,
     percent,
 )
+from ..selection.search import EFFECTIVE, FEWEST_EACH, slow_variance
 from ..simulation.simulate import upstream_names
 from .alternatives import Alternative
 from .discriminating_test import DiscriminatingTest
@@ -148,6 +150,27 @@ def slow_noise(
             "there, something acts that was not recorded."
         )
     return told
+
+
+MOST_BY_CHANCE = 1e-3
+"""Probability with which white noise alone has so much of it in its slow sums."""
+
+
+def less_than_noise(left: Sequence[FloatArray], noise: float) -> list[str]:
+    """Return a sentence where what is left without any effect is slow to a part that white noise does not have, though
+    it is less than the noise.
+
+    left: of the samples of each recording, in units of their noise, which has no memory; noise [N]: of all
+    """
+    slow = slow_variance(left, EFFECTIVE, 0.0)
+    samples = sum(own.size for own in left)
+    if samples < FEWEST_EACH * EFFECTIVE or slow * EFFECTIVE < chi2.isf(MOST_BY_CHANCE, EFFECTIVE):
+        return []
+    size = noise * math.sqrt((slow - 1.0) * EFFECTIVE / samples)
+    return [
+        f"What is left is not noise alone: {newtons(size)} of it changes slowly, less than the noise of one reading, "
+        "so that no effect is named for it. Compare the mean of many readings, or record with less noise, if it matters."
+    ]
 
 
 def before_simulation(left: float, tried: bool) -> list[str]:

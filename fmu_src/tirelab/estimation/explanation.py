@@ -108,6 +108,12 @@ class Explanation:
         """Noise floor [N] of every sample, one array for each recording."""
         return self._samples.noises(self.model.fit.problem.dataset)
 
+    @property
+    def in_noise(self) -> tuple[FloatArray, ...]:
+        """Residuals of the set given the noise-free deflection, of the compared samples in units of their noise."""
+        own = zip(self.noise_free, self.noises, self.compared, strict=True)
+        return tuple((residual / noise)[seen] for residual, noise, seen in own)
+
     @cached_property
     def left(self) -> tuple[FloatArray, ...]:
         """Residuals [N] of the set given the deflection as read or the noise-free one, whichever leaves less of a

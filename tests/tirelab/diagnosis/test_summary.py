@@ -10,6 +10,7 @@ from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import (
     QUICK,
     law_of_first_loading,
+    less_than_noise,
     not_seen,
     other_law,
     pressed_only,
@@ -78,6 +79,19 @@ def test_a_law_amid_a_first_loading_and_softened_cycles_is_told(law: float, kept
     if said:
         assert told[0].startswith("Of the first loading in foam, from 10 s to 20 s, 9")
         assert "Identify the law of the first loading" in told[0]
+
+
+@pytest.mark.parametrize(("slope", "told"), [(0.0, False), (0.02, False), (1.5, True)])
+def test_what_is_slow_and_less_than_the_noise_is_told_where_nothing_is_named(slope: float, told: bool):
+    """A slope from -1 to 1 has the root mean square 1 / sqrt(3); 4000 samples know it to 1 / sqrt(4000)."""
+    white = np.random.default_rng(4).standard_normal(4000)
+    left = white + slope / 2.0 * np.linspace(-1.0, 1.0, 4000)
+    said = less_than_noise([left[:1500], left[1500:]], 0.02)
+    assert bool(said) == told
+    if told:
+        size = float(said[0].split(" N of it changes slowly")[0].rpartition(" ")[2])
+        assert size == pytest.approx(0.02 * slope / 2.0 / np.sqrt(3.0), rel=0.15)
+    assert less_than_noise([left[:60]], 0.02) == []
 
 
 def test_a_part_that_the_press_lifts_off_is_said_to_be_only_pressed():
