@@ -169,7 +169,7 @@ def less_than_noise(left: Sequence[FloatArray], noise: float) -> list[str]:
     size = noise * math.sqrt((slow - 1.0) * EFFECTIVE / samples)
     return [
         f"What is left is not noise alone: {newtons(size)} of it changes slowly, less than the noise of one reading, "
-        "so that no effect is named for it. Compare the mean of many readings, or record with less noise, if it matters."
+        "so no effect is named for it. If it matters, compare the mean of many readings, or record with less noise."
     ]
 
 

@@ -80,7 +80,7 @@ def _trials_of(file: Path, columns: Mapping[str, str] | None) -> tuple[Path, ...
     if piece.trial is not None or not path.is_file():
         return (file,)
     try:
-        sidecar = read_sidecar(path, sheet=piece.sheet)
+        sidecar = read_sidecar(path, trial=1, sheet=piece.sheet)
         table = open_table(path, sidecar.skip_rows, piece.sheet)
         match_channels(
             Origin(path.name), table.headers, table.time_axis, {**sidecar.columns, **(columns or {})}
@@ -116,7 +116,7 @@ def why_no_recording(file: Path, columns: Mapping[str, str] | None = None) -> st
     if not is_text and LOADERS[file.suffix.lower()] is not ExcelTable:
         return None
     rows = _rows_of_numbers(file) if is_text else None
-    named = {**read_sidecar(file).columns, **(columns or {})}
+    named = {**read_sidecar(file, trial=1).columns, **(columns or {})}
     try:
         headers = open_table(file).headers
     except RecordingError:
