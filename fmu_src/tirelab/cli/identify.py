@@ -223,7 +223,9 @@ def _advice_on_pieces(found: dict[Path, Recording], part: str, tire: Path, words
 
 def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
     """Return the advice to identify the law from the first loading, "" where it is not far from the later ones."""
-    from ..identification.first_loading import first_loading
+    from ..identification.first_loading import first_loading, recording_of
+    from ..identification.part_laws import fit_laws
+    from ..identification.part_tire import tire_of
     from ..recordings.pieces import split_piece
 
     firsts = {path: first for path, r in found.items() if (first := first_loading(r)) is not None}
@@ -232,11 +234,17 @@ def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path
     path, first = max(firsts.items(), key=lambda pair: pair[1].above)
     file, piece = split_piece(path)
     own = [f"{file}{piece.part}@{first.begins:.6g}s:{first.ends:.6g}s"]
-    return (
+    told = (
         f"the first loading of {path.name} lies {plain(first.above, 2)} N from the later ones at the same deflection "
         f"(the loop of these is {plain(first.loop, 2)} N wide): the part softens or takes a set, and this law is amid "
-        f"both; identify the first loading, `{words.identify(own, part, tire)}`{words.then(tire)}"
+        "both"
     )
+    loading = [recording_of(first, found[path])]
+    try:
+        tire_of(next(fit for fit in fit_laws(loading) if fit.name == part), loading, "")
+    except TirelabError as refused:
+        return f"{told}; the law {part} of the first loading alone is not written: {refused}"
+    return f"{told}; identify the first loading, `{words.identify(own, part, tire)}`{words.then(tire)}"
 
 
 def _advice_on_holds(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:

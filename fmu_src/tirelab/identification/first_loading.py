@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..preprocessing.samples import Recorded, is_timed
+from ..recordings.recording import Recording
 from .branches import turning_points
 from .part_tire import AT_REST
 
@@ -68,6 +69,13 @@ def first_loading(recording: Recorded, residual: Array | None = None) -> FirstLo
         return None
     ends = _reached(recording, first)
     return FirstLoading(float(recording.time[first[0]]), float(recording.time[ends]), above, loop)
+
+
+def recording_of(first: FirstLoading, recording: Recording) -> Recording:
+    """Return the first loading as a recording of its own."""
+    own = (recording.time >= first.begins) & (recording.time <= first.ends)
+    r = recording
+    return Recording(r.name, r.time[own], r.deflection[own], r.surface_radius[own], r.force[own])
 
 
 def _reached(recording: Recorded, way: Sequence[int]) -> int:

@@ -120,6 +120,9 @@ _NAMED = {word: channel.name for channel in CHANNELS for word in channel.words}
 _GERMAN_SYMBOL = {"deflection": "s"}
 """Symbols of channels in German exports, taken where a fitting unit follows: s [mm]."""
 
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])")
+"""Where a word begins in the middle of a name: ForceArray."""
+
 # "force_min" is a minimum and "stroke_in" an input as often as they are minutes and inches.
 _NO_SUFFIX_UNITS = frozenset({"in", "min", "max"})
 
@@ -325,13 +328,13 @@ def may_be_qualified(header: Header, channel: Channel) -> bool:
 
 def ends_in_word(name: str, channel: str) -> bool:
     """Whether a name of what is measured ends in a word of the channel: `Lead actuator force`, `Machine_Load`."""
-    words = _words(name.partition("(")[0]).split()
+    words = _words(_HUMP.sub(" ", name.partition("(")[0])).split()
     return _one_is_of(name, (" ".join(words[i:]) for i in range(1, len(words))), channel)
 
 
 def begins_in_word(name: str, channel: str) -> bool:
-    """Whether a name of what is measured begins with a word of the channel: `Force_data`, `Load sensor 2`."""
-    words = _words(name.partition("(")[0]).split()
+    """Whether a name of what is measured begins with a word of the channel: `Load sensor 2`, `ForceArray`."""
+    words = _words(_HUMP.sub(" ", name.partition("(")[0])).split()
     return _one_is_of(name, (" ".join(words[:i]) for i in range(1, len(words))), channel)
 
 

@@ -179,9 +179,9 @@ def guessed_columns(
             guessed[name] = min(stating[name], key=lambda i: abs(i - beside))
     for names, name in product((ends_in_word, begins_in_word), ("deflection", "force")):
         said = [i for i in free if names(headers[i].name, name)]
-        if name in missing and name not in guessed and len(said) == 1:
-            guessed[name] = said[0]
-            free.remove(said[0])
+        if name in missing and name not in guessed and said:
+            guessed[name] = said[0]  # of several sensors the first
+            free = [i for i in free if i not in said]
     both = [name for name in ("deflection", "force") if name in missing and name not in guessed]
     free = [i for i in free if is_measured(headers[i].name) and not says_another(headers[i].name)]
     clock = guessed["time"] if "time" in guessed else matches["time"].index if "time" in matches else -1

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 from radialtire import read_tire
 from tirelab.cli import main
-from tirelab.identification.first_loading import first_loading
+from tirelab.identification.first_loading import first_loading, recording_of
 from tirelab.recordings.recording import Recording
 
 Array = NDArray[np.float64]
@@ -38,6 +38,9 @@ def test_a_softening_part_has_a_first_loading_and_when_it_was() -> None:
     found = first_loading(pressed(0.5, 2.0))
     assert found is not None
     assert (found.begins, found.ends) == pytest.approx((20.0, 30.0), abs=0.05)
+    alone = recording_of(found, pressed(0.5, 2.0))
+    assert np.ptp(alone.deflection) == pytest.approx(0.02, rel=0.01)
+    assert np.all(np.diff(alone.deflection) > 0.0)
     x = np.linspace(2.0, 20.0, 1001)
     assert found.above == pytest.approx(10.0 * np.sqrt(np.mean(x**2)), rel=0.02)
     assert found.loop == pytest.approx(4.0, rel=0.02)

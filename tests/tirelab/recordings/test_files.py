@@ -174,17 +174,20 @@ class TestWhatMayBeARecording:
         )
         assert why_no_recording(file) is None
 
-    def test_tests_side_by_side_whose_columns_a_sidecar_names(self, tmp_path: Path) -> None:
+    def test_sheets_of_tests_whose_columns_a_sidecar_names(self, tmp_path: Path) -> None:
         """As `tirelab inspect` writes them: one table of settings for each test, none for the whole file."""
-        time, x, force = loading()
-        rows = np.column_stack([time, x, force, time, x, force])
-        cells = "".join(",".join(f"{value:.6g}" for value in row) + "\n" for row in rows)
-        file = tmp_path / "a.csv"
-        file.write_text("A1,Motor,Current,A2,Motor,Current\n" + cells, encoding="utf-8")
+        file, book = tmp_path / "a.xlsx", openpyxl.Workbook()
+        book.remove(book.active)
+        for title in ("First", "Second"):
+            sheet = book.create_sheet(title)
+            sheet.append(["Motor", "Current"])
+            for row in zip(*loading()[1:], strict=True):
+                sheet.append(row)
+        book.save(file)
         own = 'part = true\ncolumns = {time = "", deflection = "+Motor", force = "+Current"}\n'
-        settings = "".join(f'[files."a.csv@trial{n}"]\n{own}' for n in (1, 2))
+        settings = "".join(f'[files."a.xlsx@trial{n}"]\n{own}' for n in (1, 2))
         (tmp_path / "recording.toml").write_text(settings, encoding="utf-8")
-        both = tuple(tmp_path / f"a.csv@trial{n}" for n in (1, 2))
+        both = tuple(tmp_path / f"a.xlsx@trial{n}" for n in (1, 2))
         assert recording_files([file])[0] == both
         assert recording_files([tmp_path])[0] == both
 

@@ -268,6 +268,13 @@ def test_a_symbol_in_small_letters_goes_before_the_place_of_a_column(tmp_path: P
     assert proposed(path) == ["--columns", "force=#4", "--units", "force=N"]
 
 
+def test_of_sensors_in_one_word_the_first_of_each_kind_is_guessed(tmp_path: Path) -> None:
+    _, deflection, force = loading()
+    rows = (0.1 * force, force, deflection, 2.0 * deflection)
+    path = write_rows(tmp_path / "a.csv", "ForceArrayA,ForceArrayB,PositionArrayA,PositionArrayB", *rows)
+    assert proposed(path) == ["--columns", "deflection=#3,force=#1", "--units", "deflection=mm,force=N"]
+
+
 def test_an_acceleration_beside_a_force_is_no_deflection(tmp_path: Path) -> None:
     time, deflection, force = loading()
     path = write_rows(tmp_path / "a.csv", "Time (s),Acceleration,Load (N)", time, deflection, force)
