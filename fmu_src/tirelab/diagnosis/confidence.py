@@ -26,7 +26,7 @@ from ..estimation.explanation import Explanation
 from ..estimation.findings import NamedEffect, Remainder
 from ..names import REFITTED_LAW
 from ..regressors.excitation import acts_on_reading
-from .acceptance import HeldOut
+from .held_out import HeldOut
 
 Grounds = Mapping[str, float]
 

@@ -24,7 +24,7 @@ from ..preprocessing.noise import NEGLIGIBLE
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import newtons, set_title
 from ..simulation.simulate import SmoothedMotion, simulate, smoothed_motion
-from .acceptance import rmse
+from .held_out import rmse
 from .states_of_motion import driven_alike, in_states, places_of, states_of, ways_of
 
 EXPLAINED = 0.5

@@ -31,16 +31,7 @@ from ..recordings.zero import refuse_far_zeros
 from ..regressors.dataset import arranged
 from ..selection.search import LIKE_NOISE
 from ..simulation.simulate import simulate
-from .acceptance import (
-    NO_WORSE,
-    HeldOut,
-    Validate,
-    accept,
-    is_worse,
-    rmse,
-    validation_on,
-    without_unlikely,
-)
+from .acceptance import NO_WORSE, accept, is_worse, without_unlikely
 from .alternatives import Alternative, alternatives_of, no_surer_than_alternatives
 from .asked import Asked, Before
 from .between_recordings import difference_between
@@ -49,6 +40,7 @@ from .contradicting_channel import contradicting_channel
 from .contradiction import ANEW, EXPLAINED, Contradiction, contradiction_held_out, contradiction_of, driven
 from .discriminating_test import DiscriminatingTest, limits_of_rig, recommended
 from .errors_left import FittedData, Left, left_by
+from .held_out import HeldOut, Validate, rmse, validation_on
 from .localization import Span, law_corrected, localize
 from .missed import missed_held_out
 from .sudden_change import sudden_change

@@ -14,7 +14,7 @@ from ..estimation.findings import Remainder, of_the_written_tire
 from ..preprocessing.motion import FloatArray, Motion
 from ..preprocessing.samples import OF_TIME, RawDataset, Recorded, is_timed
 from ..preprocessing.straight import at_one_rate
-from .acceptance import HeldOut, rmse
+from .held_out import HeldOut, rmse
 from .localization import Span, localize
 from .residual_model import ResidualModel, residual_models, unexplained_by
 from .verdict import FitErrors

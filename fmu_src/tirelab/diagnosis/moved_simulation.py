@@ -31,10 +31,10 @@ from ..regressors.dataset import Dataset, arranged, dataset_of
 from ..report.titles import short_title
 from ..selection.search import EFFECTIVE, LIKE_NOISE
 from ..simulation.simulate import deflection_of, simulate, upstream_names
-from .acceptance import rmse
 from .asked import Asked, Before, log_odds
 from .confidence import EITHER
 from .diagnose import diagnosed
+from .held_out import rmse
 from .simulation_correction import Believed, believed_force
 from .verdict import FitErrors, Verdict
 

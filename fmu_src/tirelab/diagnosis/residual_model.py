@@ -11,7 +11,7 @@ from ..estimation.findings import UNEXPLAINED_SHARE, UNEXPLAINED_SIZE, Remainder
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.motion import BoolArray, FloatArray, IndexArray
 from ..preprocessing.samples import RawDataset, RawExperiment
-from .acceptance import HeldOut, rmse
+from .held_out import HeldOut, rmse
 from .localization import Span
 
 KNOTS = 120

@@ -46,7 +46,7 @@ from ..preprocessing.noise import NEGLIGIBLE
 from ..recordings.recording import Recording
 from ..report.titles import newtons
 from ..simulation.simulate import UPSTREAM, SmoothedMotion, simulate
-from .acceptance import rmse
+from .held_out import rmse
 from .outcome import Replayed
 from .summary import errors_told
 from .verdict import Verdict

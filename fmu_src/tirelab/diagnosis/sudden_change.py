@@ -7,7 +7,8 @@ moments are found one by one, each where it leaves least. Ranges are such a chan
 more than NEAR, of EFFECTIVE samples and with the moment and the size of each step as parameters (BIC), and as much
 likelier than a polynomial in time with as many parameters, which follows what changes slowly in a form of its own.
 
-A step lies between whole cycles: the first loading of a part differs from all others by itself.
+A step lies between whole cycles, and in none that goes further than all before it: the first loading of a part to a
+deflection differs from all later ones by itself.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from ..estimation.explanation import NEAR, Explanation
 from ..estimation.findings import NamedEffect
 from ..names import plain
 from ..preprocessing.motion import BoolArray, FloatArray, Motion
+from ..preprocessing.noise import STILL
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import newtons, set_title
 from ..selection.search import EFFECTIVE
@@ -239,8 +241,7 @@ def _best(bare: Explanation, recordings: Sequence[Recorded], motions: Sequence[M
     for number, (recording, motion, (left, noise, seen)) in enumerate(
         zip(recordings, motions, parts, strict=True)
     ):
-        last = float(motion.cycle.max())
-        allowed = (motion.cycle >= 1.0) & (motion.cycle < last)
+        allowed = (motion.cycle < motion.cycle.max()) & ~_further(motion)
         if not (allowed & seen).any():
             continue
         ranges = _Ranges(
@@ -255,6 +256,18 @@ def _best(bare: Explanation, recordings: Sequence[Recorded], motions: Sequence[M
                 if (gain := _gain(whole / count, steps)) > most:
                     most, found = gain, steps
     return found
+
+
+def _further(motion: Motion) -> BoolArray:
+    """Return which samples (n,) belong to a cycle that goes further than all before it, either way."""
+    cycle = motion.cycle.astype(int)
+    further = np.zeros(cycle.max() + 1, dtype=bool)
+    for way in (motion.deflection, -motion.deflection):
+        ends = np.full(further.size, -np.inf)
+        np.maximum.at(ends, cycle, way)
+        before = np.concatenate([[-np.inf], np.maximum.accumulate(ends)[:-1]])
+        further |= ends > before + STILL * float(np.ptp(way))
+    return np.asarray(further[cycle])
 
 
 def _added(

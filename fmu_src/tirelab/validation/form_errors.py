@@ -30,7 +30,7 @@ from concealed.part_laws import drawn_part_law
 from radialtire import PowerLaw, TireModel, read_tire
 
 from ..computing.workers import Cores, Done, work
-from ..diagnosis.acceptance import noise_free_residual
+from ..diagnosis.held_out import noise_free_residual
 from ..estimation.explanation import explain_misfit
 from ..names import REFITTED_LAW
 from ..preprocessing.motion import motion_of

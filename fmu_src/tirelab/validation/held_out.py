@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from radialtire import TireModel
 
-from ..diagnosis.acceptance import noise_free_residual
+from ..diagnosis.held_out import noise_free_residual
 from ..fmu.replay import replay
 from ..preprocessing.motion import motion_of
 from ..recordings.recording import Recording

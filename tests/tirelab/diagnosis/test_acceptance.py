@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from drives import Drive, damped, flat_force
 from radialtire import CATALOGUE, TireModel
-from tirelab.diagnosis.acceptance import CONSIDERED, accept, validation_on, without_unlikely
+from tirelab.diagnosis.acceptance import CONSIDERED, accept, without_unlikely
+from tirelab.diagnosis.held_out import HeldOut, Part, validation_on
 from tirelab.names import REFITTED_LAW
 from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.regressors.excitation import Excitation
@@ -36,6 +37,11 @@ class Made:
     left: float
     tire: TireModel
     left_noise_free: float = field(default=0.0, kw_only=True)
+    odds: tuple[tuple[tuple[str, ...], float], ...] = field(default=(((), 0.0),), kw_only=True)
+
+    @property
+    def evidence(self) -> list[Any]:
+        return [SimpleNamespace(names=names, log_evidence=value) for names, value in self.odds]
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -201,6 +207,38 @@ def test_nothing_is_always_accepted() -> None:
     assert held_out.after == held_out.before
     wrong = [made(name, 5.0, 5000.0) for name in list(CATALOGUE)[: CONSIDERED + 2]]
     assert delivered(*wrong, made("", 15.0))[0].names == ()
+
+
+def foretold(before: float, after: float, by: str = "time block 9-12 s") -> HeldOut:
+    """A quarter of 80 samples was held out."""
+    experiment = raw_dataset_of([FITTED], TireModel()).experiments[0]
+
+    def part(samples: int) -> Part:
+        each = np.ones(samples)
+        return Part(experiment, before * each, after * each, after * each, each > 0.0)
+
+    return HeldOut(by, (part(60),), (part(20),))
+
+
+@pytest.mark.parametrize(
+    ("behind", "after", "names"),
+    [
+        (4.0, 5.0, ("inertia",)),  # 30 samples / 4 x ln 2 = 5.2, more than by how much it is less likely
+        (6.0, 5.0, ()),
+        (4.0, 9.0, ()),
+        (0.5, 9.0, ("inertia",)),
+    ],
+)
+def test_where_the_likeliest_set_is_refused_what_is_foretold_counts_against_the_baseline_too(
+    behind: float, after: float, names: tuple[str, ...]
+) -> None:
+    sets = [made("viscous_damping", 5.0), made("", 15.0), made("inertia", 5.0), made("force_lag", 5.0)]
+    sets[1] = replace(sets[1], odds=(((), 0.0), (("inertia",), -behind), (("force_lag",), -behind)))
+    of = {"viscous_damping": 20.0, "": 10.0, "inertia": after, "force_lag": 9.9}
+    ranked: Any = Ranked(tuple(sets))
+    assert accept(ranked, lambda e: foretold(10.0, of[" ".join(e.model.names)]))[0].model.names == names
+    given = accept(ranked, lambda e: foretold(10.0, of[" ".join(e.model.names)], "recordings given"))
+    assert given[0].model.names == ()
 
 
 @pytest.mark.parametrize("left", [30.0, 15.2])

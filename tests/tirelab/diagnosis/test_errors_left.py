@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from drives import flat_force, read, ride
 from radialtire import TireModel
-from tirelab.diagnosis.acceptance import validation_on
 from tirelab.diagnosis.errors_left import FittedData, left_by
+from tirelab.diagnosis.held_out import validation_on
 from tirelab.diagnosis.localization import Span
 from tirelab.estimation.explanation import explain_misfit
 from tirelab.preprocessing.samples import OF_TIME, raw_dataset_of

@@ -13,8 +13,8 @@ import pytest
 from drives import damped, flat_force, read, ride
 from radialtire import PowerLaw, TireModel
 from rivals import rivals
-from tirelab.diagnosis.acceptance import split
 from tirelab.diagnosis.diagnose import diagnose
+from tirelab.diagnosis.held_out import split
 from tirelab.estimation.explanation import explain_misfit
 from tirelab.preprocessing.samples import raw_dataset_of
 from tirelab.recordings.recording import Recording

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from drives import flat_force, read, ride
 from radialtire import TireModel
-from tirelab.diagnosis.acceptance import HeldOut, Part
+from tirelab.diagnosis.held_out import HeldOut, Part
 from tirelab.diagnosis.localization import Span
 from tirelab.diagnosis.residual_model import residual_models, unexplained_by
 from tirelab.estimation.findings import Remainder

@@ -50,9 +50,11 @@ CASES = {
 }
 
 
-def verdict_on(force: np.ndarray, catalogue: tuple[str, ...], seed: int = 5) -> Verdict:
+def verdict_on(
+    force: np.ndarray, catalogue: tuple[str, ...], seed: int = 5, deflection: np.ndarray = DEFLECTION
+) -> Verdict:
     noise = np.random.default_rng(seed).normal(0.0, NOISE, TIME.size)
-    recording = Recording.from_arrays(TIME, DEFLECTION, force + noise, "flat")
+    recording = Recording.from_arrays(TIME, deflection, force + noise, "flat")
     return diagnose([recording], TireModel(), catalogue=catalogue)
 
 
@@ -124,3 +126,12 @@ def test_beside_an_effect_that_is_there_both_are_told() -> None:
     assert found.moments[0].startswith("4.")
     sure = {e.name: e.probability for e in verdict.effects}
     assert sure["viscous_damping"] > 0.9
+
+
+def test_the_first_loading_to_a_deflection_is_no_step() -> None:
+    """From 40 s on the triangles go twice as far; what is loaded for the first time bears a tenth more."""
+    deflection = DEFLECTION * np.where(TIME < 40.0, 0.5, 1.0)
+    first = (TIME < 4.0) | ((TIME >= 40.0) & (TIME < 44.0))
+    force = law(deflection) * np.where(first, 1.1, 1.0)
+    found = verdict_on(force, ("pressure_leak", "viscous_damping"), deflection=deflection).contradiction
+    assert not isinstance(found, SuddenChange)
