@@ -46,6 +46,11 @@ FALL = 5
 """Samples within which a part breaks; a release takes longer."""
 
 
+TORN, OTHERS = 0.25, 0.01
+"""A part tears where the force falls by more than the first part of its largest, and FAR times as much as elsewhere but
+for the second part of the recording: a jolt as its grips close."""
+
+
 def sudden_doubts(
     deflection: NDArray[np.float64], force: NDArray[np.float64]
 ) -> tuple[tuple[str, int, str], ...]:
@@ -136,8 +141,42 @@ def break_doubt(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> 
     """Return the sample from which on a broken part carries nothing and a sentence, none where it did not break; arrays
     (n,) [m], [N].
 
-    The force falls within FALL samples and does not come back, where the part carried it at every such deflection.
+    The force falls within FALL samples and does not come back, where the part carried it at every such deflection; or
+    it falls by TORN of its largest, far more than anywhere else, while the deflection goes on.
     """
+    return _broken(deflection, force) or _torn(deflection, force)
+
+
+def _torn(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
+    """The same of a part that carries some of its force on; where a motion turns back, friction falls as suddenly."""
+    if force.size < FEWEST * FALL:
+        return ()
+    carried = np.abs(force)
+    ends = np.minimum(np.arange(force.size) + FALL, force.size - 1)
+    falls = carried - carried[ends]
+    usual = float(np.sort(falls)[-(2 * FALL + int(OTHERS * falls.size))])
+    sudden = np.flatnonzero(falls > max(TORN * float(carried.max()), FAR * usual))
+    if not sudden.size or sudden[-1] < 2 * FALL:
+        return ()
+    last = int(max(sudden[sudden > sudden[-1] - FALL], key=falls.__getitem__))
+    fall, end = float(falls[last]), int(ends[last])
+    way = np.sign(force[last]) * deflection
+    goes_on = way[end] - way[last] > HELD * (end - last) / FALL * (way[last] - way[last - FALL]) > 0.0
+    if not goes_on or float(carried[end:].max()) > carried[last] - HELD * fall:
+        return ()
+    at = last + int(np.argmin(np.diff(carried[last : end + 1])))
+    if at + 2 >= force.size:
+        return ()  # the last sample alone may be read falsely
+    part = 100.0 * fall / carried[last]
+    said = (
+        f"the force falls within {end - last} samples by {part:.0f} % and does not come back, while the deflection "
+        f"goes on: if the part tore or slipped, give the range before it, as in FILE@1:{at + 1}"
+    )
+    return ((at + 1, said),)
+
+
+def _broken(deflection: NDArray[np.float64], force: NDArray[np.float64]) -> tuple[tuple[int, str], ...]:
+    """Return where nothing is carried any more."""
     most = float(np.max(np.abs(force)))
     carries = np.flatnonzero(np.abs(force) > HELD * most)
     if not carries.size:

@@ -85,6 +85,23 @@ def test_a_part_that_breaks_is_doubted_at_the_first_sample_without_force() -> No
     assert at == 481
 
 
+@pytest.mark.parametrize("kept", [0.6, 0.2])
+@pytest.mark.parametrize("after", [2, 4, 60])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_part_that_tears_and_carries_on_is_doubted(kept: float, after: int, sign: float) -> None:
+    """It takes a tenth more over the whole, after a jolt as its grips close, and tears as it is pulled on."""
+    force = np.append(TAKEN[:480], kept * TAKEN[479] * np.ones(after)) + 2.0 * np.cos(
+        np.arange(480.0 + after)
+    )
+    force[5:7] += [3000.0, 1500.0]
+    pull = np.linspace(0.0, 8e-3 * force.size / 500, force.size)
+    ((at, said),) = break_doubt(sign * pull, sign * force)
+    assert at == 480
+    assert f"samples by {100.0 * (1.0 - kept):.0f} % and does not come back" in said
+    assert said.endswith("as in FILE@1:480")
+    assert break_doubt(np.append(pull[:478], np.full(force.size - 478, pull[477])), force) == ()
+
+
 @pytest.mark.parametrize(
     ("deflection", "force"),
     [
