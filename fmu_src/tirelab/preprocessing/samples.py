@@ -14,6 +14,7 @@ import numpy as np
 from radialtire import TireModel
 
 from .motion import BoolArray, FloatArray, IndexArray, Motion, motion_of
+from .noise import STILL
 
 ROWS = 8000
 """Number of samples in which the misfit is located: evenly spaced, of all recordings together."""
@@ -155,7 +156,7 @@ def within(fitted: Iterable[Placed], asked: Iterable[Placed]) -> list[BoolArray]
     """Return which samples lie within the deflections that are fitted on their surface, or on all surfaces where theirs
     is none of the fitted ones.
 
-    Beyond them no law is known: what it leaves there says nothing of any effect.
+    Further beyond them than a way that is no stroke no law is known: what it leaves there says nothing of any effect.
     """
     (deflection, own), others = map(np.concatenate, zip(*fitted, strict=True)), list(asked)
     count = 1 + max(int(own.max()), *(int(number.max()) for _, number in others))
@@ -163,6 +164,8 @@ def within(fitted: Iterable[Placed], asked: Iterable[Placed]) -> list[BoolArray]
     for number in np.unique(own):
         there = deflection[own == number]
         least[number], most[number] = there.min(), there.max()
+    margin = STILL * (most - least)
+    least, most = least - margin, most + margin
     return [(least[n] <= x) & (x <= most[n]) for x, n in others]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from radialtire import TireModel, power_law
-from tirelab.preprocessing.samples import MOST_SURFACES, ROWS, raw_dataset_of, surface_numbers
+from tirelab.preprocessing.samples import MOST_SURFACES, ROWS, raw_dataset_of, surface_numbers, within
 from tirelab.recordings.recording import Recording
 
 BASELINE = TireModel()
@@ -71,3 +71,11 @@ def test_no_surface_of_a_terrain_is_told_from_the_others() -> None:
     radii = np.linspace(0.2, 0.9, MOST_SURFACES + 1)
     assert not np.any(surface_numbers([radii])[0])
     assert np.all(np.diff(surface_numbers([radii[1:]])[0]) == 1)
+
+
+def test_what_is_hardly_beyond_the_fitted_deflections_is_within_them() -> None:
+    """A press that comes back to a hair below its zero; two in a hundred of the stroke are no stroke of their own."""
+    fitted = (np.linspace(0.0, 10.0, 50), np.zeros(50, dtype=int))
+    asked = np.array([-0.25, -0.15, 0.0, 5.0, 10.0, 10.15, 10.25])
+    (found,) = within([fitted], [(asked, np.zeros(7, dtype=int))])
+    assert found.tolist() == [False, True, True, True, True, True, False]
