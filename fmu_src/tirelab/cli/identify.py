@@ -121,7 +121,13 @@ def command(recordings: tuple[Path, ...], output: Output, reading: Reading, **op
     for recording in read:
         for note in recording.notes:
             output.note(f"{recording.name}: {note}")
-    known = part and all(_is_said_to_be_a_part(file, said) for file in files)
+    of_parts = all(_is_said_to_be_a_part(file, said) for file in files)
+    if of_parts and not part:
+        output.note(
+            "the settings say that these are recordings of a part, and this is the law of a tire, that cannot pull: "
+            "--part compare compares the laws of parts"
+        )
+    known = part and of_parts
     as_read, refused = tuple((said if known else reading).words()), diagnosis_refused(read, part=bool(part))
     words = _Words(tuple(map(str, recordings)), as_read, refused)
     if found is None:

@@ -88,3 +88,21 @@ def test_a_folder_is_read_by_the_order_of_names_and_a_stray_text_file_is_skipped
     files = [str(folder / f"{name}.csv") for name in ("a", "b")]
     assert CliRunner().invoke(command, [*files, "--out", str(outs[1])]).exit_code == 0
     assert outs[0].read_text(encoding="utf-8") == outs[1].read_text(encoding="utf-8")
+
+
+def test_where_the_settings_say_a_part_the_laws_of_parts_are_pointed_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    write_recording(triangle(), "flat.csv")
+    assert "--part compare compares" not in CliRunner().invoke(command, ["flat.csv"]).output
+    Path("recording.toml").write_text("part = true\n", encoding="utf-8")
+    done = CliRunner().invoke(command, ["flat.csv"])
+    assert done.exit_code == 0
+    assert (
+        "this is the law of a tire, that cannot pull: --part compare compares the laws of parts"
+        in done.output
+    )
+    assert (
+        "this is the law of a tire" not in CliRunner().invoke(command, ["flat.csv", "--part", "power"]).output
+    )
