@@ -102,6 +102,8 @@ def asked(
     sized |= {name: values[match.index] for name, match in matches.items() if match.index in values}
     likely = guessed_units(sized, settings.part, _metres(headers, matches, settings))
     columns = {name: f"#{guessed[name] + 1}" if name in guessed else "NAME" for name in lacking.columns}
+    if len(columns) > 1 and columns.get("time") == "NAME":
+        columns["time"] = ""  # no column counts up as a clock does: it was not measured
     for name in lacking.units:
         if matches[name].index not in values:
             table.read((Wanted(matches[name].index, name),))  # no numbers: no unit helps

@@ -170,7 +170,7 @@ def test_of_vectors_without_a_time_the_longest_are_guessed(tmp_path: Path) -> No
     scipy.io.savemat(
         tmp_path / "a.mat", {"all": np.arange(18.0).reshape(9, 2), "one": deflection, "two": force}
     )
-    assert proposed(tmp_path / "a.mat")[1] == "time=NAME,deflection=#3,force=#4"
+    assert proposed(tmp_path / "a.mat")[1] == "time=,deflection=#3,force=#4"
 
 
 AXES = "disp_x_mm,disp_y_mm,disp_z_mm,Rx_deg,Ry_deg,Rz_deg,Fx_N,Fy_N,Fz_N"
