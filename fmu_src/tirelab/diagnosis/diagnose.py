@@ -46,6 +46,7 @@ from .missed import missed_held_out
 from .sudden_change import sudden_change
 from .summary import (
     before_simulation,
+    in_few_samples,
     law_of_first_loading,
     less_than_noise,
     not_seen,
@@ -304,7 +305,9 @@ def _sentences(
     told.append(summarise(*of_found, judged.confidence, fit, test))
     told += judged.before.told(fit)
     told += before_simulation(judged.of_law, judged.before.tried) if judged.of_law else []
-    told += not_seen(left.remainder.uncompared, left.models) if left.unexplained else []
+    if left.unexplained:
+        told += not_seen(left.remainder.uncompared, left.models)
+        told += in_few_samples(data.fitted, explanation.in_noise)
     told += slow
     if not (explanation.effects or left.unexplained or any(noise.memory > 1 for noise in noises)):
         told += less_than_noise(explanation.in_noise, fit.noise)

@@ -16,7 +16,7 @@ from ..identification.lift_off import lifts_off
 from ..names import REFITTED_LAW, UNKNOWN, plain
 from ..preprocessing.data_checks import MAJORITY
 from ..preprocessing.levels import white_level
-from ..preprocessing.noise import Noise
+from ..preprocessing.noise import NEGLIGIBLE, Noise
 from ..preprocessing.samples import Recorded, is_timed
 from ..report.titles import (
     dependence,
@@ -160,7 +160,8 @@ def less_than_noise(left: Sequence[FloatArray], noise: float) -> list[str]:
     """Return a sentence where what is left without any effect is slow to a part that white noise does not have, though
     it is less than the noise.
 
-    left: of the samples of each recording, in units of their noise, which has no memory; noise [N]: of all
+    left: of the samples of each recording, in units of their noise, which has no memory, 0 where they are not compared;
+    noise [N]: of all
     """
     slow = slow_variance(left, EFFECTIVE, 0.0)
     samples = sum(own.size for own in left)
@@ -171,6 +172,43 @@ def less_than_noise(left: Sequence[FloatArray], noise: float) -> list[str]:
         f"What is left is not noise alone: {newtons(size)} of it changes slowly, less than the noise of one reading, "
         "so no effect is named for it. If it matters, compare the mean of many readings, or record with less noise."
     ]
+
+
+FEW = 0.02
+"""Part of the samples in which most of what is left may lie by itself: then it is an event, not physics of the part."""
+
+
+def in_few_samples(recordings: Sequence[Recorded], left: Sequence[FloatArray]) -> list[str]:
+    """Return a sentence where most of what is left beyond the noise lies in one run of FEW of the samples.
+
+    left (n,): of all samples of each recording, in units of their noise, 0 where they are not compared
+    """
+    beyond = [np.maximum(own**2 - 1.0, 0.0) for own in left]
+    whole, samples = sum(float(own.sum()) for own in beyond), sum(own.size for own in beyond)
+    length = int(FEW * samples)
+    if length < 1:
+        return []
+    for recording, own in zip(recordings, beyond, strict=True):
+        sums = np.concatenate([[0.0], np.cumsum(own)])
+        windows = sums[length:] - sums[:-length]
+        if not windows.size or windows.max() <= MAJORITY * whole:
+            continue
+        begin = int(np.argmax(windows))
+        parts = (sums[begin + 1 : begin + length + 1] - sums[begin]) / windows[begin]
+        ends = np.searchsorted(parts, (0.5 * NEGLIGIBLE, 1.0 - 0.5 * NEGLIGIBLE))
+        first, last = (begin + int(end) for end in ends)
+        bounds = [f"{i + 1}" for i in (first, last)]
+        if is_timed([recording]):
+            bounds = [f"{plain(float(recording.time[i]), 5)}s" for i in (first, last)]
+        ranges = [f"FILE@:{bounds[0]}"] * (first > length) + [f"FILE@{bounds[1]}:"] * (
+            last < own.size - length
+        )
+        return [
+            f"{100.0 * windows.max() / whole:.0f} % of what is left beyond the noise lie in {last - first + 1} of "
+            f"{samples} samples, from {bounds[0]} to {bounds[1]} of {recording.name}: if something happened there, as "
+            f"a jolt or a break, diagnose what is beside it, {listed(ranges, 'and')}."
+        ]
+    return []
 
 
 def before_simulation(left: float, tried: bool) -> list[str]:

@@ -110,9 +110,9 @@ class Explanation:
 
     @property
     def in_noise(self) -> tuple[FloatArray, ...]:
-        """Residuals of the set given the noise-free deflection, of the compared samples in units of their noise."""
+        """Residuals of the set given the noise-free deflection, in units of the noise; 0 where not compared."""
         own = zip(self.noise_free, self.noises, self.compared, strict=True)
-        return tuple((residual / noise)[seen] for residual, noise, seen in own)
+        return tuple(np.where(seen, residual / noise, 0.0) for residual, noise, seen in own)
 
     @cached_property
     def left(self) -> tuple[FloatArray, ...]:

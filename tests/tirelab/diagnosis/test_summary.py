@@ -9,6 +9,7 @@ from tirelab.diagnosis.discriminating_test import DiscriminatingTest, Test
 from tirelab.diagnosis.residual_model import ResidualModel
 from tirelab.diagnosis.summary import (
     QUICK,
+    in_few_samples,
     law_of_first_loading,
     less_than_noise,
     not_seen,
@@ -92,6 +93,28 @@ def test_what_is_slow_and_less_than_the_noise_is_told_where_nothing_is_named(slo
         size = float(said[0].split(" N of it changes slowly")[0].rpartition(" ")[2])
         assert size == pytest.approx(0.02 * slope / 2.0 / np.sqrt(3.0), rel=0.15)
     assert less_than_noise([left[:60]], 0.02) == []
+
+
+@pytest.mark.parametrize(
+    ("jolt", "ranges"),
+    [((3, 9), "FILE@0.18s:."), ((990, 999), "FILE@:19.8s."), ((500, 505), "FILE@:10s and FILE@10.1s:.")],
+)
+def test_what_lies_in_few_samples_is_told_with_the_ranges_beside_it(jolt: tuple[int, int], ranges: str):
+    """Of 1000 samples ten at most are off, by twenty times the noise; the others are white, a fifth above it."""
+    time = np.arange(1000) * 0.02
+    left = 1.2 * np.random.default_rng(6).standard_normal(1000)
+    own = slice(jolt[0], jolt[1] + 1)
+    pulled = Recording("fibre", time, 1e-3 * time, np.full(1000, np.inf), time)
+    assert in_few_samples([pulled], [left]) == []
+    (told,) = in_few_samples([pulled], [left + _at(own, 20.0)])
+    assert f"lie in {jolt[1] - jolt[0] + 1} of 1000 samples" in told
+    assert told.endswith(ranges)
+
+
+def _at(own: slice, size: float) -> np.ndarray:
+    off = np.zeros(1000)
+    off[own] = size
+    return off
 
 
 def test_a_part_that_the_press_lifts_off_is_said_to_be_only_pressed():
