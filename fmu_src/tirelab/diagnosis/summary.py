@@ -169,8 +169,8 @@ def less_than_noise(left: Sequence[FloatArray], noise: float) -> list[str]:
         return []
     size = noise * math.sqrt((slow - 1.0) * EFFECTIVE / samples)
     return [
-        f"What is left is not noise alone: {newtons(size)} of it changes slowly, less than the noise of one reading, "
-        "so no effect is named for it. If it matters, compare the mean of many readings, or record with less noise."
+        f"What is left changes slowly by {newtons(size)}, as white noise does not: a noise that lasts, or something "
+        "smaller than the noise, for which no effect is named. If it matters, record more readings, and some at rest."
     ]
 
 

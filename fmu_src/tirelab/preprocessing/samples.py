@@ -156,7 +156,8 @@ def within(fitted: Iterable[Placed], asked: Iterable[Placed]) -> list[BoolArray]
     """Return which samples lie within the deflections that are fitted on their surface, or on all surfaces where theirs
     is none of the fitted ones.
 
-    Further beyond them than a way that is no stroke no law is known: what it leaves there says nothing of any effect.
+    Beyond them no law is known: what it leaves there says nothing of any effect. At the end where a tire or a part is
+    deflected least, a way that is no stroke is not beyond.
     """
     (deflection, own), others = map(np.concatenate, zip(*fitted, strict=True)), list(asked)
     count = 1 + max(int(own.max()), *(int(number.max()) for _, number in others))
@@ -164,8 +165,8 @@ def within(fitted: Iterable[Placed], asked: Iterable[Placed]) -> list[BoolArray]
     for number in np.unique(own):
         there = deflection[own == number]
         least[number], most[number] = there.min(), there.max()
-    margin = STILL * (most - least)
-    least, most = least - margin, most + margin
+    way, lower, upper = STILL * (most - least), np.abs(least), np.abs(most)
+    least, most = least - way * (lower < upper), most + way * (upper < lower)
     return [(least[n] <= x) & (x <= most[n]) for x, n in others]
 
 

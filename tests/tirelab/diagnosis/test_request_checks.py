@@ -91,7 +91,7 @@ def test_a_folder_may_be_new_but_not_within_a_file(tmp_path: Path) -> None:
 
 
 def test_what_only_held_out_recordings_reach_is_told() -> None:
-    """A press to 10 mm, and one to 20 mm, of which 49 of 101 samples lie deeper than 10.2 mm; that lies within."""
+    """A press to 10 mm, and one to 20 mm, of which half the samples lie deeper; one to 10.2 mm lies within."""
     half, whole, within = (
         Recording(
             name,
@@ -102,7 +102,7 @@ def test_what_only_held_out_recordings_reach_is_told() -> None:
         for name, most in (("half", 0.010), ("whole", 0.020), ("within", 0.0102))
     )
     (told,) = beyond_fitted([half], [within, whole])
-    assert told.startswith("49 % of whole lie beyond the deflections fitted on their surface, 0 to 10 mm")
+    assert told.startswith("50 % of whole lie beyond the deflections fitted on their surface, 0 to 10 mm")
     assert beyond_fitted([whole], [half, within]) == []
     assert beyond_fitted([half], []) == []
     drum = replace(whole, surface_radius=np.full(101, 0.3))

@@ -90,7 +90,7 @@ def test_what_is_slow_and_less_than_the_noise_is_told_where_nothing_is_named(slo
     said = less_than_noise([left[:1500], left[1500:]], 0.02)
     assert bool(said) == told
     if told:
-        size = float(said[0].split(" N of it changes slowly")[0].rpartition(" ")[2])
+        size = float(said[0].split(" N, as white noise does not")[0].rpartition(" ")[2])
         assert size == pytest.approx(0.02 * slope / 2.0 / np.sqrt(3.0), rel=0.15)
     assert less_than_noise([left[:60]], 0.02) == []
 

@@ -33,16 +33,15 @@ def counted(held_out: Recording, *fitted: Recording) -> float:
 
 
 def test_what_is_deeper_than_all_that_is_fitted_does_not_count() -> None:
-    """Two in a hundred of the stroke are no deeper: see `samples.within`."""
     shallow = pressed("shallow", 0.0, 0.010)
-    assert 0.0099 < counted(pressed("deep", 0.0, 0.020, seed=2), shallow) <= 0.0102
+    assert 0.0099 < counted(pressed("deep", 0.0, 0.020, seed=2), shallow) <= 0.0101
     assert counted(pressed("alike", 0.001, 0.009, seed=3), shallow) > 0.0089
     assert counted(pressed("beyond", 0.012, 0.020, seed=4), shallow) == 0.0
 
 
 def test_a_surface_has_its_own_deflections_if_it_is_fitted() -> None:
     flat, drum = pressed("flat", 0.0, 0.010), pressed("drum", 0.0, 0.020, radius=0.3)
-    assert counted(pressed("deep", 0.0, 0.020, seed=2), flat, drum) <= 0.0102
+    assert counted(pressed("deep", 0.0, 0.020, seed=2), flat, drum) <= 0.0101
     assert counted(pressed("other", 0.0, 0.020, radius=-0.3, seed=2), flat, drum) > 0.0198
 
 

@@ -73,9 +73,14 @@ def test_no_surface_of_a_terrain_is_told_from_the_others() -> None:
     assert np.all(np.diff(surface_numbers([radii[1:]])[0]) == 1)
 
 
-def test_what_is_hardly_beyond_the_fitted_deflections_is_within_them() -> None:
-    """A press that comes back to a hair below its zero; two in a hundred of the stroke are no stroke of their own."""
-    fitted = (np.linspace(0.0, 10.0, 50), np.zeros(50, dtype=int))
-    asked = np.array([-0.25, -0.15, 0.0, 5.0, 10.0, 10.15, 10.25])
-    (found,) = within([fitted], [(asked, np.zeros(7, dtype=int))])
-    assert found.tolist() == [False, True, True, True, True, True, False]
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_is_hardly_beyond_the_least_deflection_is_within(sign: float) -> None:
+    """A press that comes back to a hair beyond its zero; two in a hundred of the stroke are no stroke of their own."""
+    fitted = (sign * np.linspace(0.0, 10.0, 50), np.zeros(50, dtype=int))
+    asked = sign * np.array([-0.25, -0.15, 0.0, 5.0, 10.0, 10.15])
+    (found,) = within([fitted], [(asked, np.zeros(6, dtype=int))])
+    assert found.tolist() == [False, True, True, True, True, False]
+    (held,) = within(
+        [(np.linspace(-10.0, 10.0, 50), np.zeros(50, dtype=int))], [(asked, np.zeros(6, dtype=int))]
+    )
+    assert held.tolist() == [True, True, True, True, True, False]
