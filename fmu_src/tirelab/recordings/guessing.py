@@ -73,14 +73,25 @@ def driven(values: FloatArray) -> bool:
     return len(steps) > 1 and bool(np.quantile(steps, 0.9) < EVENLY * np.quantile(steps, 0.1))
 
 
-def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> frozenset[int]:
-    """Return the columns that are the rate of another one over time, as a velocity recorded beside the travel is.
+BACK = 0.01
+"""Part of its span by which what is driven one way alone comes back at most, by the noise of its gauge."""
+
+
+def _goes_on(values: FloatArray) -> bool:
+    """Whether numbers go one way alone, as a specimen that is crushed is driven, and its force is not."""
+    known = values[np.isfinite(values)]
+    return bool(np.max(np.maximum.accumulate(known) - known, initial=0.0) < BACK * np.ptp(known))
+
+
+def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> dict[int, int]:
+    """Return the columns that are the rate of another one over time, as a velocity recorded beside the travel is, each
+    with that other one.
 
     A damper's force goes with its rate too, but only a rate has the size of it, but for the units, a power of ten.
     """
-    found = set()
+    found = {}
     with np.errstate(all="ignore"):  # a column may hold anything
-        for column in values.values():
+        for moved, column in values.items():
             rate = np.gradient(column, time)
             for i, other in values.items():
                 known = np.isfinite(rate) & np.isfinite(other)
@@ -89,8 +100,8 @@ def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> frozenset
                 (own, between), (_, of_rate) = np.cov(other[known], rate[known])
                 decades = np.log10(np.abs(between / of_rate))
                 if between > np.sqrt(A_RATE * own * of_rate) and abs(decades - np.round(decades)) < SAME_SIZE:
-                    found.add(i)
-    return frozenset(found)
+                    found[i] = moved
+    return found
 
 
 def _states(header: Header, name: str) -> bool:
@@ -127,10 +138,11 @@ def guessed_columns(
     A unit tells where one column alone states a fitting one, the mass on a scale a force, or one of the axis of the
     other channel, disp_z beside Fz. Of several it is the one that stands nearest to the other channel, and where both
     channels have several the two that stand nearest to each other. Of two columns without a unit the one that a drive
-    moves evenly is the deflection, else the smaller; of more, what is the rate of another one is neither, and what was
-    asked for is no reading, nor is an acceleration one of either. A counter, a strain and a stress are neither, nor is
-    what was sampled another number of times, or rests at a few values. Beside a strain and a stress nothing is guessed
-    by its size: these are the readings, by the specimen's size.
+    moves evenly is the deflection, else the one that goes one way alone, else the smaller; of more, what is the rate of
+    another one is neither, and that other one the deflection; what was asked for is no reading, nor is an acceleration
+    one of either. A counter, a strain and a stress are neither, nor is what was sampled another number of times, or
+    rests at a few values. Beside a strain and a stress nothing is guessed by its size: these are the readings, by the
+    specimen's size.
     """
     taken = {match.index for match in matches.values()}
     free = [i for i in values if i not in taken and np.nanmin(values[i]) < np.nanmax(values[i])]
@@ -188,11 +200,21 @@ def guessed_columns(
     if len(free) > len(both) and clock in values:
         rates = rates_among({i: values[i] for i in {*free, *places.values()} - {clock}}, values[clock])
         free = [i for i in free if i not in rates]
+        moving = [i for i in free if i in rates.values()]
+        if "deflection" in both and len(moving) == 1:
+            guessed["deflection"] = moving[0]
+            both.remove("deflection")
+            free.remove(moving[0])
     strained = [h for h in headers if is_strained(h.name) and not _states(h, "deflection")]
     if len(free) >= len(both) > len(strained):
         # Of many columns the first ones: of trials side by side those of one trial.
         sized = sorted(
-            free[: len(both)], key=lambda i: (not driven(values[i]), float(np.nanmax(np.abs(values[i]))))
+            free[: len(both)],
+            key=lambda i: (
+                not driven(values[i]),
+                not _goes_on(values[i]),
+                float(np.nanmax(np.abs(values[i]))),
+            ),
         )
         guessed |= dict(zip(both, sized, strict=True))
     return guessed

@@ -81,6 +81,30 @@ def test_a_velocity_beside_a_travel_that_is_named_is_not_guessed_to_be_the_force
     assert proposed(path)[:2] == ["--columns", "force=#4"]
 
 
+def test_of_two_columns_the_one_that_goes_one_way_alone_is_the_deflection(tmp_path: Path) -> None:
+    """Foam that is crushed: its force falls over its plateau and is the smaller number; the steps are uneven."""
+    crushed = np.cumsum(np.random.default_rng(2).exponential(0.6, 300) ** 2)
+    force = 5.0 * np.tanh(crushed / 20.0) - 0.01 * crushed
+    for name, columns in (("a.csv", (force, crushed)), ("b.csv", (crushed, force))):
+        path = write_rows(tmp_path / name, "a,b", *columns)
+        own = "deflection=#2,force=#1" if name == "a.csv" else "deflection=#1,force=#2"
+        assert own in proposed(path)[1]
+
+
+def test_what_a_recorded_velocity_is_the_rate_of_is_the_deflection_however_large(tmp_path: Path) -> None:
+    """A sine of 50 with a force of 0.8 at most: by their sizes the force would be the deflection."""
+    time = np.linspace(0.0, 4.0, 400)
+    moved = 50.0 * np.sin(2.0 * np.pi * time)
+    rows = (
+        time,
+        moved,
+        np.gradient(moved, time),
+        0.8 * np.tanh(np.cos(2.0 * np.pi * time) + 0.4 * moved / 50.0),
+    )
+    path = write_rows(tmp_path / "a.csv", "a,b,c,d", *rows)
+    assert proposed(path)[1] == "time=#1,deflection=#2,force=#4"
+
+
 def test_a_force_that_goes_with_the_rate_is_still_guessed(tmp_path: Path) -> None:
     """A linear damper of 31 N s/m: its force is as much like the rate as a rate is, but not of its size."""
     t = np.arange(0.0, 4.0, 0.005)
