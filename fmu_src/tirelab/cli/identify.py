@@ -163,7 +163,15 @@ def _part(
     from ..computing.staging import staged
     from ..identification.misfit import MISFIT, misfit_sentence
     from ..identification.part_laws import fit_laws, reading_noise
-    from ..identification.part_tire import CURVE, best_writable, curve_advice, falling, springless, tire_of
+    from ..identification.part_tire import (
+        CURVE,
+        best_writable,
+        curve_advice,
+        falling,
+        held_though_pressed,
+        springless,
+        tire_of,
+    )
     from ..identification.table import law_table
 
     fits = fit_laws(recordings)
@@ -173,7 +181,7 @@ def _part(
         law = next(fit for fit in fits if fit.name == part)
         model = tire_of(law, recordings, name)
         line = next(fit for fit in fits if fit.name == "linear")
-        written = springless(law, model) or falling(law, line)
+        written = springless(law, model) or falling(law, line) or held_though_pressed(model, recordings)
         with staged(tire.parent) as folder:
             write_tire(model, folder / tire.name)
     else:
@@ -230,8 +238,9 @@ def _advice_on_pieces(found: dict[Path, Recording], part: str, tire: Path, words
 def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path, words: _Words) -> str:
     """Return the advice to identify the law from the first loading, "" where it is not far from the later ones."""
     from ..identification.first_loading import first_loading, recording_of
+    from ..identification.lift_off import lifts_off
     from ..identification.part_laws import fit_laws
-    from ..identification.part_tire import tire_of
+    from ..identification.part_tire import PRESSED, tire_of
     from ..recordings.pieces import split_piece
 
     firsts = {path: first for path, r in found.items() if (first := first_loading(r)) is not None}
@@ -246,6 +255,7 @@ def _advice_on_first_loading(found: dict[Path, Recording], part: str, tire: Path
         "both"
     )
     loading = [recording_of(first, found[path])]
+    part = "power" if part not in PRESSED and lifts_off(found.values()) else part
     try:
         tire_of(next(fit for fit in fit_laws(loading) if fit.name == part), loading, "")
     except TirelabError as refused:

@@ -203,6 +203,18 @@ def springless(fit: LawFit, tire: TireModel) -> str:
     )
 
 
+def held_though_pressed(tire: TireModel, recordings: Sequence[Recording]) -> str:
+    """Return a sentence where a law of a part that is held at both ends was asked for, and the press lifts off; ""
+    else.
+    """
+    if not tire.two_sided or not lifts_off(recordings):
+        return ""
+    return (
+        "the force rests on a way back where the part was loaded before: what presses it lifts off, and this file is "
+        f"of a part that is held at both ends; --part {', '.join(PRESSED)} cannot pull"
+    )
+
+
 def falling(fit: LawFit, linear: LawFit) -> str:
     """Return a sentence for a curve of a force that falls as the deflection grows, "" where it does not.
 

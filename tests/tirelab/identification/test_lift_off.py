@@ -7,7 +7,7 @@ import pytest
 from tirelab.identification.law_fit import LawFit
 from tirelab.identification.lift_off import lifts_off
 from tirelab.identification.part_laws import fit_laws
-from tirelab.identification.part_tire import best_writable, tire_of
+from tirelab.identification.part_tire import best_writable, held_though_pressed, tire_of
 from tirelab.recordings.recording import Recording
 
 TIME = np.arange(0.0, 40.0, 0.02)
@@ -66,3 +66,12 @@ def test_the_law_that_is_proposed_of_it_cannot_pull() -> None:
     assert best_writable(held, [part]) == "power"
     assert not tire_of(fits["power"], [part], "").two_sided
     assert best_writable([fits["power_preload"]], [recorded(1e4 * X - 30.0)]) == "power_preload"
+
+
+def test_a_law_that_pulls_is_written_where_it_is_asked_for_and_doubted() -> None:
+    part, spring = recorded(set_by(0.6)), recorded(1e4 * X)
+    fits: dict[str, LawFit] = {fit.name: fit for fit in fit_laws([part])}
+    held, pressed = (tire_of(fits[name], [part], "") for name in ("power_preload", "power"))
+    assert "--part power, linear_gap, power_gap cannot pull" in held_though_pressed(held, [part])
+    assert held_though_pressed(pressed, [part]) == ""
+    assert held_though_pressed(held, [spring]) == ""
