@@ -46,21 +46,21 @@ def accept(explanation: Explanation, validate: Validate) -> tuple[Explanation, H
         if not chosen.effects or not is_worse(validation):
             break
     if not chosen.effects and chosen is not least[0]:
-        chosen, validation = _foretelling(chosen, least[least.index(chosen) :], validate)
+        others = [(e, validate(e)) for e in least[least.index(chosen) + 1 :]]
+        chosen, validation = _foretelling((chosen, validation), others)
     whole = chosen.with_parts()
     return (chosen, validation) if whole is chosen else accept(whole, validate)
 
 
 def _foretelling(
-    nothing: Explanation, others: Sequence[Explanation], validate: Validate
+    nothing: tuple[Explanation, HeldOut], others: Sequence[tuple[Explanation, HeldOut]]
 ) -> tuple[Explanation, HeldOut]:
     """Return the baseline, or the set that is likelier than it by what it foretells of the held-out data too.
 
     Held-out data that refuse the likeliest sets refute the evidence, by which the baseline comes next.
     """
-    odds = {e.names: e.log_evidence for e in nothing.evidence}
-    judged = [(e, validate(e)) for e in others]
-    return max(judged, key=lambda pair: odds[pair[0].model.names] + pair[1].evidence)
+    odds = {e.names: e.log_evidence for e in nothing[0].evidence}
+    return max([nothing, *others], key=lambda pair: odds[pair[0].model.names] + pair[1].evidence)
 
 
 def _leaving_least(chosen: Explanation, likely: Sequence[Explanation]) -> Explanation:

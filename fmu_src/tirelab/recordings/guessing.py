@@ -80,7 +80,8 @@ BACK = 0.01
 def _goes_on(values: FloatArray) -> bool:
     """Whether numbers go one way alone, as a specimen that is crushed is driven, and its force is not."""
     known = values[np.isfinite(values)]
-    return bool(np.max(np.maximum.accumulate(known) - known, initial=0.0) < BACK * np.ptp(known))
+    back = (np.max(np.maximum.accumulate(way) - way, initial=0.0) for way in (known, -known))
+    return bool(min(back) < BACK * np.ptp(known))
 
 
 def rates_among(values: Mapping[int, FloatArray], time: FloatArray) -> dict[int, int]:

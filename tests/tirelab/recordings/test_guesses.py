@@ -85,7 +85,7 @@ def test_of_two_columns_the_one_that_goes_one_way_alone_is_the_deflection(tmp_pa
     """Foam that is crushed: its force falls over its plateau and is the smaller number; the steps are uneven."""
     crushed = np.cumsum(np.random.default_rng(2).exponential(0.6, 300) ** 2)
     force = 5.0 * np.tanh(crushed / 20.0) - 0.01 * crushed
-    for name, columns in (("a.csv", (force, crushed)), ("b.csv", (crushed, force))):
+    for name, columns in (("a.csv", (force, crushed)), ("b.csv", (-crushed, force))):
         path = write_rows(tmp_path / name, "a,b", *columns)
         own = "deflection=#2,force=#1" if name == "a.csv" else "deflection=#1,force=#2"
         assert own in proposed(path)[1]
